@@ -1,6 +1,7 @@
 //! Common parts of the terms of the equations: destination of their contributions, dependence of their tangents, and failures
 //! of their evaluation.
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::coupling::Layout;
@@ -63,30 +64,44 @@ impl Sums<'_> {
         }
     }
 
-    /// Adds the columns of the pressures of an element that water flows through, by its number among such elements, and their transposes among the
-    /// columns of its nodes' displacements.
-    pub fn couple_pressures(&mut self, number: usize, wet: &WetElement, columns: &PressureColumns) {
+    /// Adds ∂r/∂u, ∂r/∂p and ∂f/∂p of an element that water flows through, by its number among such elements: with −r = s Δm and f = −∫ b p ∂J/∂u dV they are
+    /// −s ∂Δm/∂u, of which ∂f/∂p is the transpose, and −s ∂Δm/∂p s.
+    pub fn couple_pressures(
+        &mut self,
+        number: usize,
+        wet: &WetElement,
+        scales: &[f64; MOST_CORNERS],
+        PressureTangent { opens, takes }: &PressureTangent,
+    ) {
         let Some(tangent) = &mut self.tangent else { return };
         let (nodes, in_mesh) = (wet.nodes.len(), wet.in_mesh);
-        let blocks = self.layout.blocks_of_water(number).chunks_exact(nodes + in_mesh);
-        for (pair, blocks) in columns.chunks_exact(2).zip(blocks) {
-            let (own, transposed) = blocks.split_at(nodes);
-            for (node, block) in own.iter().enumerate() {
-                for (j, column) in pair.iter().enumerate() {
-                    (0..2).for_each(|i| tangent.values[block.value(i, j)] += column[2 * node + i]);
-                }
+        let blocks: Vec<&[BlockPosition]> = self.layout.blocks_of_water(number).chunks_exact(nodes + in_mesh).collect();
+        let mut add =
+            |block: &BlockPosition, i: usize, j: usize, value: f64| tangent.values[block.value(i, j)] -= value;
+        for (b, &place) in wet.places.iter().enumerate() {
+            let (own, transposed) = blocks[place / 2 - in_mesh].split_at(nodes);
+            let (j, scale) = (place % 2, scales[b]);
+            for ((column, row), opens) in own.iter().zip(transposed).zip(&opens[b]) {
+                add(column, 0, j, scale * opens.x);
+                add(column, 1, j, scale * opens.y);
+                add(row, j, 0, scale * opens.x);
+                add(row, j, 1, scale * opens.y);
             }
-            for (node, block) in transposed.iter().enumerate() {
-                for (i, row) in pair.iter().enumerate() {
-                    (0..2).for_each(|j| tangent.values[block.value(i, j)] += row[2 * node + j]);
-                }
+            for (a, &place) in wet.places.iter().enumerate() {
+                add(&own[place / 2], place % 2, j, scales[a] * scale * takes[a][b]);
             }
         }
     }
 }
 
-/// Columns of the pressures' dofs in the tangent of an element that water flows through; the rows are two dofs of each of all its nodes.
-pub(super) type PressureColumns = [[f64; 2 * (MOST_NODES + MOST_CORNERS)]; 2 * MOST_CORNERS];
+/// What the water of an element changes by, by corner.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PressureTangent {
+    /// ∂Δm/∂u = ∫ b N ∂J/∂u dV of all nodes [L²]
+    pub opens: [[Vector2<f64>; MOST_NODES]; MOST_CORNERS],
+    /// ∂Δm/∂p + Δt/β ∫ ∇N·∂v/∂∇p ∇N dV [L⁵/F]
+    pub takes: [[f64; MOST_CORNERS]; MOST_CORNERS],
+}
 
 /// Adds a dense tangent of `n` nodes (column-major, two dofs per node) at the given blocks (column by column).
 pub(super) fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], local: &[f64], n: usize) {

@@ -5,10 +5,11 @@
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 
-use super::sums::{PressureColumns, Sums, TrialFailure};
+use super::sums::{PressureTangent, Sums, TrialFailure};
 use super::trial::Trial;
 use super::water_balances::{Balances, Times};
 use crate::laws::bulk::{MaterialFailure, cofactor};
+use crate::model::imposed::filling;
 use crate::model::pore_flow::{ConstantFlow, MOST_CORNERS, MOST_NODES, MOST_POINTS, PoreFlow, WetElement, WetPoint};
 use crate::model::{Activated, Model};
 
@@ -40,19 +41,40 @@ pub(super) struct Pressed {
 }
 
 /// What an element adds, by corner: Δm, ∫ v·∇N dV, the magnitudes of their parts, and what they change by with the displacements and pressures.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone)]
 struct Answer {
     change: [f64; MOST_CORNERS],
     flow: [f64; MOST_CORNERS],
     size: [f64; MOST_CORNERS],
-    /// ∫ b N ∂J/∂u dV of all nodes [L²]
-    opens: [[Vector2<f64>; MOST_NODES]; MOST_CORNERS],
-    /// ∂Δm/∂p + Δt/β ∫ ∇N·∂v/∂∇p ∇N dV [L⁵/F]
-    takes: [[f64; MOST_CORNERS]; MOST_CORNERS],
+    by: PressureTangent,
     /// (5) [F]
     force: [[f64; 2]; MOST_NODES],
+    /// ∂f/∂u of (5) where it is wanted, column by column [F/L]
+    stiffness: [f64; 4 * MOST_NODES * MOST_NODES],
     /// p and b (J − 1) at every point [F/L²], [-]
     pores: [[f64; 2]; MOST_POINTS],
+}
+
+impl Default for Answer {
+    fn default() -> Self {
+        Self {
+            change: [0.0; MOST_CORNERS],
+            flow: [0.0; MOST_CORNERS],
+            size: [0.0; MOST_CORNERS],
+            by: PressureTangent::default(),
+            force: Default::default(),
+            stiffness: [0.0; 4 * MOST_NODES * MOST_NODES],
+            pores: Default::default(),
+        }
+    }
+}
+
+impl Answer {
+    /// Clears everything but the stiffness, which is written whole.
+    fn clear(&mut self) {
+        [&mut self.change, &mut self.flow, &mut self.size].into_iter().for_each(|values| values.fill(0.0));
+        (self.by, self.force) = Default::default();
+    }
 }
 
 /// J of a deformed element at a point.
@@ -117,13 +139,6 @@ struct Corners {
     before: [f64; MOST_CORNERS],
 }
 
-/// What an element adds to the tangent.
-struct Tangent {
-    pressures: PressureColumns,
-    /// ∂f/∂u of (5), column by column, if it is not zero
-    displacements: Option<Vec<f64>>,
-}
-
 impl Increment<'_> {
     /// Adds what the elements that are there take up and let flow, and the forces (5); stores what elastic bodies remember of their water in `memory`.
     pub fn add_elements(
@@ -134,30 +149,31 @@ impl Increment<'_> {
     ) -> Result<Pressed, TrialFailure> {
         let Self { model, activated, flow, trial, times, .. } = self;
         let wanted = sums.tangent.is_some();
-        let evaluate = |(_, given): &(usize, &WetElement)| {
-            let wet = activated.wet(given);
-            let answer = self.evaluate(wet).map_err(|cause| TrialFailure::material(model, wet.element, cause))?;
-            Ok((answer, wanted.then(|| self.tangent(wet, &answer))))
-        };
         let there = |(_, wet): &(usize, &WetElement)| trial.step.has(model.body_of_element[wet.element]);
         let elements: Vec<(usize, &WetElement)> = flow.elements.iter().enumerate().filter(there).collect();
         let mut pressed = Pressed::default();
+        let mut answers = vec![Answer::default(); BATCH.min(elements.len())];
         for batch in elements.chunks(BATCH) {
-            let answers: Vec<Result<_, TrialFailure>> = batch.par_iter().with_min_len(MANY).map(evaluate).collect();
-            for (answer, &(number, wet)) in answers.into_iter().zip(batch) {
-                let (answer, tangent) = answer?;
+            let evaluate = |(answer, (_, given)): (&mut Answer, &(usize, &WetElement))| {
+                let wet = activated.wet(given);
+                self.evaluate(wet, wanted, answer).map_err(|cause| TrialFailure::material(model, wet.element, cause))
+            };
+            let found = answers.par_iter_mut().zip(batch).with_min_len(MANY).map(evaluate);
+            // The first failure by number, whatever the threads do
+            found.collect::<Vec<_>>().into_iter().collect::<Result<(), _>>()?;
+            for (answer, &(number, wet)) in answers.iter().zip(batch) {
                 for (a, &k) in wet.pressures.iter().enumerate() {
                     balances.take(k, answer.change[a], answer.size[a]);
                     balances.let_out(k, times.span * answer.flow[a], 0.0);
                 }
-                if let Some(tangent) = &tangent {
-                    sums.couple_pressures(number, wet, &tangent.pressures);
-                }
+                let scales = std::array::from_fn(|a| wet.pressures.get(a).map_or(0.0, |&k| flow.scales[k]));
+                sums.couple_pressures(number, wet, &scales, &answer.by);
                 if wet.presses {
-                    self.press(wet, &answer, memory, &mut pressed);
+                    self.press(wet, answer, memory, &mut pressed);
                     sums.push(&wet.nodes[..wet.in_mesh], answer.force.as_flattened());
-                    if let Some(stiffness) = tangent.and_then(|tangent| tangent.displacements) {
-                        sums.couple_element(wet.element, wet.in_mesh, &stiffness);
+                    if wanted && !wet.is_linear {
+                        let dofs = 2 * wet.in_mesh;
+                        sums.couple_element(wet.element, wet.in_mesh, &answer.stiffness[..dofs * dofs]);
                     }
                 }
             }
@@ -176,37 +192,39 @@ impl Increment<'_> {
             *slot.of_mut(own) = *pores;
             pressed.stored -= volume * pores[0] * pores[1];
         }
-        pressed.work += model.filling(solid, e, [old, new]);
+        pressed.work += filling(slot, count, solid.point_volumes(), [old, new]);
     }
 
-    fn evaluate(&self, wet: &WetElement) -> Result<Answer, MaterialFailure> {
+    /// Computes what an element adds, and the stiffness by (5) if it is wanted.
+    fn evaluate(&self, wet: &WetElement, wanted: bool, answer: &mut Answer) -> Result<(), MaterialFailure> {
         let Self { flow, trial, u, times, .. } = self;
         let (old, corners) = (&trial.old.displacement, wet.pressures.len());
         let mut at = Corners::default();
         for (a, &k) in wet.pressures.iter().enumerate() {
             (at.now[a], at.before[a]) = (flow.pressure(k, Some(u)), flow.pressure(k, Some(old)));
         }
-        let (mut answer, mut flows) = (Answer::default(), Flows::default());
+        answer.clear();
+        let mut flows = Flows::default();
         let moved = [wet.moved(u), wet.moved(old)];
         match &wet.constant {
             Some(constant) => {
-                flows.add_constant(constant, &mut answer);
+                flows.add_constant(constant, answer);
                 for (k, point) in wet.points.iter().enumerate() {
                     let opened = jacobian(wet, &wet.deformed(point, &moved[0]))? - 1.0;
                     answer.pores[k] = [point.pressure(&at.now), wet.biot * opened];
                 }
             }
             None => {
-                (0..wet.points.len()).try_for_each(|k| self.add_point(wet, k, &moved, &at, &mut answer, &mut flows))?;
+                (0..wet.points.len()).try_for_each(|k| self.add_point(wet, k, &moved, &at, answer, &mut flows))?;
             }
         }
         let [now, before] = moved;
         for a in 0..corners {
-            for (force, opens) in answer.force.iter_mut().zip(&answer.opens[a]) {
+            for (force, opens) in answer.force.iter_mut().zip(&answer.by.opens[a]) {
                 force[0] -= at.now[a] * opens.x;
                 force[1] -= at.now[a] * opens.y;
             }
-            for ((now, before), opens) in now.iter().zip(&before).zip(&answer.opens[a]).take(wet.in_mesh) {
+            for ((now, before), opens) in now.iter().zip(&before).zip(&answer.by.opens[a]).take(wet.in_mesh) {
                 let part = opens.component_mul(&(now - before));
                 answer.size[a] += part.x.abs() + part.y.abs();
                 if wet.constant.is_some() {
@@ -221,10 +239,13 @@ impl Increment<'_> {
                 answer.change[a] += taken;
                 answer.flow[a] += out;
                 answer.size[a] += taken.abs() + times.span * out.abs();
-                answer.takes[a][b] = stores + times.span * flows.conducts[a][b];
+                answer.by.takes[a][b] = stores + times.span * flows.conducts[a][b];
             }
         }
-        Ok(answer)
+        if wanted && wet.presses && !wet.is_linear {
+            stiffen(wet, &now, &answer.pores, &mut answer.stiffness);
+        }
+        Ok(())
     }
 
     /// Adds what opens and flows at a point.
@@ -248,59 +269,54 @@ impl Increment<'_> {
         for a in 0..wet.pressures.len() {
             let share = wet.biot * point.volume * point.values[a];
             answer.change[a] += share * (jacobian_is - jacobian_was);
-            answer.opens[a].iter_mut().zip(&by).for_each(|(opens, by)| *opens += share * by);
+            answer.by.opens[a].iter_mut().zip(&by).for_each(|(opens, by)| *opens += share * by);
             flows.falls[a] += point.slopes[a].dot(&falls);
             let along = conducts.tr_mul(&point.slopes[a]);
             flows.conducts[a].iter_mut().zip(&point.slopes).for_each(|(flows, slope)| *flows += along.dot(slope));
         }
         Ok(())
     }
+}
 
-    fn tangent(&self, wet: &WetElement, answer: &Answer) -> Tangent {
-        Tangent { pressures: self.columns(wet, answer), displacements: self.stiffness(wet, answer) }
+/// Writes ∂f/∂u of (5), column by column.
+///
+/// ```text
+/// J = h det F:  ∂²J = h ∂² det F + ∂ det F ∂h + ∂h ∂ det F,   ∂² det F/∂u_ax ∂u_by = N_a,x N_b,y − N_a,y N_b,x,   h by u_x alone
+/// ```
+fn stiffen(
+    wet: &WetElement,
+    moved: &[Vector2<f64>; MOST_NODES],
+    pores: &[[f64; 2]; MOST_POINTS],
+    stiffness: &mut [f64],
+) {
+    let (nodes, dofs) = (wet.in_mesh, 2 * wet.in_mesh);
+    stiffness[..dofs * dofs].fill(0.0);
+    let mut turns = [[0.0; MOST_NODES]; MOST_NODES];
+    for (point, [pressure, _]) in wet.points.iter().zip(pores) {
+        let (f, hoop) = wet.deformed(point, moved);
+        let share = wet.biot * pressure * point.volume;
+        for (b, of_b) in point.gradients[..nodes].iter().enumerate() {
+            turns[b]
+                .iter_mut()
+                .zip(&point.gradients)
+                .for_each(|(turns, of_a)| *turns += share * hoop * of_a.perp(of_b));
+        }
+        if wet.is_ring {
+            let area = cofactor(&f);
+            let plane = point.gradients.map(|gradient| area * gradient);
+            for (b, a) in (0..nodes).flat_map(|b| (0..nodes).map(move |a| (b, a))) {
+                let (around_a, around_b) = (point.hoop[a], point.hoop[b]);
+                stiffness[2 * b * dofs + 2 * a] -= share * (plane[a].x * around_b + around_a * plane[b].x);
+                stiffness[(2 * b + 1) * dofs + 2 * a] -= share * around_a * plane[b].y;
+                stiffness[2 * b * dofs + 2 * a + 1] -= share * plane[a].y * around_b;
+            }
+        }
     }
-
-    /// ∂f/∂u of (5), column by column; `None` where it is zero or not added here.
-    fn stiffness(&self, wet: &WetElement, answer: &Answer) -> Option<Vec<f64>> {
-        if !wet.presses || wet.is_linear {
-            return None;
+    for (b, turns) in turns[..nodes].iter().enumerate() {
+        for (a, turns) in turns[..nodes].iter().enumerate() {
+            stiffness[(2 * b + 1) * dofs + 2 * a] -= turns;
+            stiffness[2 * b * dofs + 2 * a + 1] += turns;
         }
-        let (dofs, moved) = (2 * wet.in_mesh, wet.moved(self.u));
-        let mut stiffness = vec![0.0; dofs * dofs];
-        for (point, [pressure, _]) in wet.points.iter().zip(&answer.pores) {
-            let (f, hoop) = wet.deformed(point, &moved);
-            let (share, area) = (wet.biot * pressure * point.volume, cofactor(&f));
-            // J = det F h: ∂²J = h ∂² det F + ∂ det F ∂h + ∂h ∂ det F, and h changes by u_x alone
-            for (b, of_b) in point.gradients[..wet.in_mesh].iter().enumerate() {
-                let plane_b = area * of_b;
-                for (a, of_a) in point.gradients[..wet.in_mesh].iter().enumerate() {
-                    let (plane_a, turns) = (area * of_a, share * hoop * of_a.perp(of_b));
-                    stiffness[(2 * b + 1) * dofs + 2 * a] -= turns;
-                    stiffness[2 * b * dofs + 2 * a + 1] += turns;
-                    stiffness[2 * b * dofs + 2 * a] -= share * (plane_a.x * point.hoop[b] + point.hoop[a] * plane_b.x);
-                    stiffness[(2 * b + 1) * dofs + 2 * a] -= share * point.hoop[a] * plane_b.y;
-                    stiffness[2 * b * dofs + 2 * a + 1] -= share * plane_a.y * point.hoop[b];
-                }
-            }
-        }
-        Some(stiffness)
-    }
-
-    /// Columns of the tangent of the pressures' dofs: the rows are dofs of all its nodes, two for each.
-    fn columns(&self, wet: &WetElement, answer: &Answer) -> PressureColumns {
-        let (mut columns, first) = ([[0.0; 2 * (MOST_NODES + MOST_CORNERS)]; 2 * MOST_CORNERS], 2 * wet.in_mesh);
-        let scales = |a: usize| self.flow.scales[wet.pressures[a]];
-        for (b, &place) in wet.places.iter().enumerate() {
-            let column = &mut columns[place - first];
-            for (rows, opens) in column.chunks_exact_mut(2).zip(&answer.opens[b][..wet.in_mesh]) {
-                rows[0] -= scales(b) * opens.x;
-                rows[1] -= scales(b) * opens.y;
-            }
-            for (a, &place) in wet.places.iter().enumerate() {
-                column[place] -= scales(a) * scales(b) * answer.takes[a][b];
-            }
-        }
-        columns
     }
 }
 
@@ -317,7 +333,7 @@ impl Flows {
         for (a, falls) in falls.iter().enumerate() {
             self.falls[a] = *falls;
             self.conducts[a].iter_mut().zip(conducts.row(a).iter()).for_each(|(own, conducts)| *own = *conducts);
-            let nodes = answer.opens[a].iter_mut().enumerate().take(opens.ncols() / 2);
+            let nodes = answer.by.opens[a].iter_mut().enumerate().take(opens.ncols() / 2);
             nodes.for_each(|(node, own)| *own = Vector2::new(opens[(a, 2 * node)], opens[(a, 2 * node + 1)]));
         }
     }

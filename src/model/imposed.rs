@@ -324,12 +324,7 @@ impl Model {
     pub fn filling(&self, solid: &SolidElement, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
         let law = self.body_of(element).material.description();
         let (count, Some(slot)) = (law.variables.len(), law.slot(&GIVEN_PRESSURE)) else { return 0.0 };
-        let of = |(volume, (old, new)): (&f64, (&[f64], &[f64]))| {
-            let ([before, opened], [after, opens]) = (slot.of(old), slot.of(new));
-            -0.5 * (opened + opens) * (after - before) * volume
-        };
-        let points = old.chunks_exact(count).zip(new.chunks_exact(count));
-        solid.point_volumes().iter().zip(points).map(of).sum()
+        filling(slot, count, solid.point_volumes(), [old, new])
     }
 
     /// Number of variables of an element's material at a point, those of the given pressure, and this; `None` without one.
@@ -384,4 +379,14 @@ fn linear(Moment { time, beyond }: Moment, value: impl Fn(f64) -> f64) -> f64 {
     let Some([from, to]) = beyond else { return value(time) };
     let [first, last] = [value(from), value(to)];
     first + (time - from) / (to - from) * (last - first)
+}
+
+/// Work of a change of the pressure in pores, as in [`Model::filling`], by the place of the pressure among so many variables.
+#[doc(hidden)]
+pub fn filling(slot: Slot<2>, count: usize, volumes: &[f64], [old, new]: [&[f64]; 2]) -> f64 {
+    let of = |(volume, (old, new)): (&f64, (&[f64], &[f64]))| {
+        let ([before, opened], [after, opens]) = (slot.of(old), slot.of(new));
+        -0.5 * (opened + opens) * (after - before) * volume
+    };
+    volumes.iter().zip(old.chunks_exact(count).zip(new.chunks_exact(count))).map(of).sum()
 }

@@ -87,6 +87,8 @@ pub struct WetElement {
     pub biot: f64,
     /// whether the body is linear: its water flows through the undeformed body
     pub is_linear: bool,
+    /// whether it is a ring
+    pub is_ring: bool,
     /// whether the pressure acts with the balances of the water, not in the law of the body
     pub presses: bool,
     /// c = k M/γ_w, and the size [L²/T], [L]
@@ -432,6 +434,7 @@ impl WetElement {
             void_ratio: fluid.kozeny_carman.then(|| fluid.porosity / (1.0 - fluid.porosity)),
             biot,
             is_linear: law.is_linear,
+            is_ring: mesh.section.is_axisymmetric(),
             presses: body.skeleton.is_some(),
             diffusivity: mobility[0].max(mobility[1]) * law.p_wave_modulus,
             size: solid.area().sqrt(),
