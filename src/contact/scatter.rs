@@ -48,17 +48,20 @@ impl PointSequence {
 
     /// The larger of the scatters of p and q [-]
     pub fn scatter(&self, states: &[ContactState]) -> f64 {
-        self.alternation(states, ADJACENT).unwrap_or(0.0)
+        self.alternation(states, ADJACENT, 2).unwrap_or(0.0)
     }
 
-    /// The same over all points between two in contact, of a contact so short that no two neighbours are inner points; `None` on others [-]
-    pub fn short_scatter(&self, states: &[ContactState]) -> Option<f64> {
-        let is_long = self.alternation(states, ADJACENT).is_some();
-        self.alternation(states, 1).filter(|_| !is_long)
+    /// The same over all points between two in contact, of a contact so short that no two neighbours are inner points; `None` on others [-].
+    /// The second value has one more residual that alternates in each row: beside a kink two do, of a zigzag all.
+    pub fn short_scatter(&self, states: &[ContactState]) -> Option<[f64; 2]> {
+        let is_long = self.alternation(states, ADJACENT, 2).is_some();
+        let short = |in_a_row: usize| self.alternation(states, 1, in_a_row).filter(|_| !is_long);
+        Some([short(2)?, short(3)?])
     }
 
-    /// The larger scatter over the points with so many in contact on either side; `None` if no two of them are neighbours.
-    fn alternation(&self, states: &[ContactState], neighbours: usize) -> Option<f64> {
+    /// The larger scatter over the points with so many in contact on either side, with so many residuals of p in a row, and one more of q;
+    /// `None` if no two of them are neighbours.
+    fn alternation(&self, states: &[ContactState], neighbours: usize, in_a_row: usize) -> Option<f64> {
         let is_closed = |k: usize| states.get(k).is_some_and(ContactState::is_closed);
         let goes_on = |k: usize| self.after(k - 1).is_some() && self.after(k).is_some();
         let is_gap = |k: usize| k > 0 && goes_on(k) && !is_closed(k) && is_closed(k - 1) && is_closed(k + 1);
@@ -90,7 +93,8 @@ impl PointSequence {
             });
             least.sum::<f64>()
         };
-        let [p, q] = [alternates(&|state| state.friction.pressure, 2), alternates(&ContactState::shear, 3)];
+        let p = alternates(&|state| state.friction.pressure, in_a_row);
+        let q = alternates(&ContactState::shear, in_a_row + 1);
         Some(if sum > 0.0 { (p.max(q) / count).sqrt() / (sum / count) } else { 0.0 })
     }
 }

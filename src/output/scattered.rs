@@ -21,7 +21,8 @@ const PART: f64 = 0.1;
 /// Its least number of increments, unless it is half of the step: in one or two, slip that begins and contact that advances alternate as well.
 const INCREMENTS: usize = 3;
 
-/// The same at the end of a step for a contact so short that all of it lies close to its ends, where pressures are steep.
+/// The same at the end of a step for a contact so short that all of it lies close to its ends, where pressures are steep, unless one more
+/// residual alternates.
 const SCATTERS_IF_SHORT: f64 = 0.125;
 
 /// The largest scatter of each contact over its bound, and what it was so far in this step.
@@ -146,9 +147,10 @@ impl Within {
             (at_end / SCATTERS, text(end, at_end, " (column scatter)".into())),
             (mean / SCATTERS, text(largest.end, largest.scatter, over_time)),
         );
-        let Some(all_over) = sequence.short_scatter(states) else { return found };
+        let Some([pairs, rows]) = sequence.short_scatter(states) else { return found };
         let closed = states.iter().filter(|state| state.is_closed()).count();
         let on = format!(" on {}", count(closed, "closed point"));
-        most(found, (all_over / SCATTERS_IF_SHORT, text(end, all_over, on)))
+        let found = most(found, (pairs / SCATTERS_IF_SHORT, text(end, pairs, on.clone())));
+        most(found, (rows / SCATTERS, text(end, rows, on)))
     }
 }
