@@ -9,9 +9,10 @@
 //! D = ∫_{g < 0} φ (−g) ds,   W_a = ∫_{g < 0} φ (−g) N_a ds (slave nodes),   r = Σ W_a x_a/D,   A = D²/∫_{g < 0} φ g² ds
 //! ```
 //! With g = n·r, the force α_n ⟨−g⟩ A of a point is α_n D, and its energy ½ α_n g² A is ½ α_n ∫ φ ⟨−g⟩² ds. Where g is uniform, both are the same.
+//! κ is the mean of that of the segments with the same weights (`ridges.rs`).
 
 use super::dual::{DualVector, Number};
-use super::mortar_segments::{Frame, Line, Overlap, between_nodes, oblique};
+use super::mortar_segments::{Frame, Line, Overlap, between_nodes, lean, oblique};
 use super::surface::Segment;
 use crate::mesh::shape;
 
@@ -64,6 +65,8 @@ pub(super) struct Averages<N> {
     depth: N,
     /// ∫ φ g² ds of what is closed [L³]
     squares: N,
+    /// ∫ φ (−g) κ ds of what is closed [L²]
+    leaning: N,
     /// Least gap of what a point next to a ridge overlaps, if nothing of it is closed [L]
     pub least: Option<N>,
 }
@@ -74,7 +77,8 @@ impl<N: Number> Averages<N> {
         self.extent = extent;
         self.weights.clear();
         self.weights.resize(nodes, N::default());
-        (self.share, self.depth, self.squares, self.least) = (N::default(), N::default(), N::default(), None);
+        (self.share, self.depth, self.squares) = (N::default(), N::default(), N::default());
+        (self.leaning, self.least) = (N::default(), None);
     }
 
     /// Weights of r.
@@ -95,6 +99,11 @@ impl<N: Number> Averages<N> {
         }
     }
 
+    /// κ; none where everything counts
+    pub fn lean(&self) -> Option<N> {
+        (self.extent == Extent::Closed).then(|| self.leaning.over(&self.depth))
+    }
+
     /// D/∫ φ ds of what is closed [L]
     pub fn mean_depth(&self) -> f64 {
         self.depth.value() / self.share.value()
@@ -110,6 +119,7 @@ impl<N: Number> Averages<N> {
             Extent::Closed if edge.len() == 2 && segment.middle.is_none() => 3,
             _ => 4,
         };
+        let lean = (self.extent == Extent::Closed).then(|| lean(segment, along, frame));
         for (at, weight) in shape::gauss(points) {
             let xi = middle.plus(&half.scaled(at));
             let slave = Line::Edge(edge);
@@ -130,11 +140,12 @@ impl<N: Number> Averages<N> {
             let eta = master.coordinate(&position, along, 0.5, frame);
             let others = master.values(&eta);
             self.share.accumulate(1.0, &share);
-            if self.extent == Extent::Closed {
+            if let Some(lean) = &lean {
                 let depth = frame.position(segment.nodes(), &others).minus(&position).dot(&along.turned());
                 share = share.times(&depth);
                 self.depth.accumulate(1.0, &share);
                 self.squares.accumulate(1.0, &share.times(&depth));
+                self.leaning.accumulate(1.0, &share.times(lean));
             }
             for (&node, value) in edge.iter().zip(&values) {
                 self.weights[frame.local(node)].accumulate(1.0, &share.times(value));

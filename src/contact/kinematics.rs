@@ -66,6 +66,8 @@ pub struct Kinematics {
     pub slip: f64,
     /// Current tributary length of the point [L]
     pub length: f64,
+    /// κ: pressure acts along n − κ s, the normal of the master next to a ridge of the slave; 0 elsewhere [-]
+    pub lean: f64,
     /// Whether the variations are computed; they are empty otherwise
     pub varied: bool,
     /// δg
@@ -76,6 +78,8 @@ pub struct Kinematics {
     pub drotation: Vec<f64>,
     /// δ(length) [-]
     pub dlength: Vec<f64>,
+    /// δκ [1/L]
+    pub dlean: Vec<f64>,
     /// Positions in `nodes` of the weights that change
     pub changing: Vec<usize>,
     /// δw_a of these, row by row [1/L]
@@ -209,7 +213,7 @@ impl Kinematics {
     /// Sets the normal and clears everything else.
     pub fn begin(&mut self, normal: Vector2<f64>) {
         (self.normal, self.tangent) = (normal, tangent_of(normal));
-        (self.slip, self.length) = (0.0, 0.0);
+        (self.slip, self.length, self.lean) = (0.0, 0.0, 0.0);
         self.lever = None;
         self.nodes.clear();
         self.changing.clear();
@@ -220,10 +224,10 @@ impl Kinematics {
     /// Sets all weights and variations to zero, once the nodes are listed.
     pub fn clear(&mut self) {
         let dofs = if self.varied { 2 * self.nodes.len() } else { 0 };
-        let Self { relative, dgap, dslip, drotation, dlength, dxi, .. } = self;
+        let Self { relative, dgap, dslip, drotation, dlength, dlean, dxi, .. } = self;
         relative.clear();
         relative.resize(self.nodes.len(), 0.0);
-        for row in [dgap, dslip, drotation, dlength, dxi] {
+        for row in [dgap, dslip, drotation, dlength, dlean, dxi] {
             row.clear();
             row.resize(dofs, 0.0);
         }

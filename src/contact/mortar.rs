@@ -141,6 +141,22 @@ impl Mortar {
         self.corners.entering(&self.edges, surface, overlaps, x)
     }
 
+    /// The ridge that is nearest to a place in a configuration: its distance [L], and the slope of its flanks.
+    pub fn nearest_ridge(
+        &self,
+        master: &Master,
+        surface: &Surface,
+        at: Vector2<f64>,
+        x: &Configuration,
+    ) -> Option<(f64, f64)> {
+        if self.corners == Corners::default() {
+            return None;
+        }
+        let mut overlaps = Overlaps::default();
+        self.cut(surface, &Index::new(master, x), [x, x], &mut overlaps);
+        self.corners.nearest(&self.ridges(surface, &overlaps, x), at, x)
+    }
+
     /// The slave edges as they face a mesh surface, cut in some configuration, with the ridges of the committed one.
     pub fn facing<'a>(&'a self, surface: &'a Surface, overlaps: &'a Overlaps, ridges: &'a Ridges) -> Facing<'a> {
         Facing { mortar: self, surface, overlaps, ridges }
@@ -210,7 +226,8 @@ impl Facing<'_> {
         }
         let length = averages.length().scaled(self.surface.share());
         let met = Meeting { gap: gap.value(), master_point };
-        MeanPlace { nodes: &frame.nodes, relative, gap, slip, length, axes: [s, n] }.write(k);
+        let lean = averages.lean().filter(|_| self.is_at_ridge(point));
+        MeanPlace { nodes: &frame.nodes, relative, gap, slip, length, lean, axes: [s, n] }.write(k);
         Some(met)
     }
 
@@ -283,6 +300,12 @@ impl Facing<'_> {
         self.integrate(point, Extent::All, frame, averages);
         averages.least = least.filter(|gap| gap.value() > 0.0);
         averages.length().value() > NEGLIGIBLE * whole
+    }
+
+    /// Whether a point is next to a ridge of the slave.
+    fn is_at_ridge(&self, point: usize) -> bool {
+        let edges = &self.mortar.edges;
+        self.near(point).any(|(part, _)| self.ridges.are_at(part, &edges[part.edge]))
     }
 
     /// Whether a point is next to a ridge, or faces one.
@@ -362,6 +385,8 @@ struct MeanPlace<'a, N> {
     pub gap: N,
     pub slip: N,
     pub length: N,
+    /// κ
+    pub lean: Option<N>,
     /// s and n
     pub axes: [DualVector<N>; 2],
 }
@@ -369,12 +394,13 @@ struct MeanPlace<'a, N> {
 impl<N: Number> MeanPlace<'_, N> {
     /// Writes it, with its variations on request, to the kinematics of the point.
     pub fn write(self, k: &mut Kinematics) {
-        let Self { nodes, relative, gap, slip, length, axes: [s, n] } = self;
+        let Self { nodes, relative, gap, slip, length, lean, axes: [s, n] } = self;
         k.begin(Vector2::new(n.x.value(), n.y.value()));
         k.nodes.extend_from_slice(nodes);
         k.clear();
         k.tangent = Vector2::new(s.x.value(), s.y.value());
         (k.slip, k.length) = (slip.value(), length.value());
+        k.lean = lean.as_ref().map_or(0.0, Number::value);
         k.relative.iter_mut().zip(relative).for_each(|(value, w)| *value = w.value());
         if !k.varied {
             return;
@@ -383,6 +409,7 @@ impl<N: Number> MeanPlace<'_, N> {
         set(&mut k.dgap, &gap);
         set(&mut k.dslip, &slip);
         set(&mut k.dlength, &length);
+        lean.iter().for_each(|lean| set(&mut k.dlean, lean));
         let [dx, dy] = [&s.x, &s.y].map(|d| d.gradient().iter().copied().chain(repeat(0.0)));
         let turns = k.drotation.iter_mut().zip(dx.zip(dy));
         turns.for_each(|(turn, (dx, dy))| *turn = dx * k.normal.x + dy * k.normal.y);

@@ -179,6 +179,15 @@ pub(super) fn oblique<N: Number>(segment: &Segment, along: &DualVector<N>, frame
     (cosine.value() < OBLIQUE).then(|| cosine.map(((cosine.value() + FACING) / width).max(0.0), 1.0 / width))
 }
 
+/// κ: tangent of the angle from the direction of an edge to that of a segment, up to that from which the segment counts less.
+pub(super) fn lean<N: Number>(segment: &Segment, along: &DualVector<N>, frame: &Frame<N>) -> N {
+    let [start, end] = segment.ends;
+    let direction = frame.at(end).minus(frame.at(start)).normalized();
+    let cosine = direction.dot(along);
+    let least = if cosine.value() < OBLIQUE { N::constant(OBLIQUE) } else { cosine };
+    direction.dot(&along.turned()).over(&least)
+}
+
 /// φ at ξ on an edge of n nodes from its values there, and its derivative: linear from node to node.
 pub(super) fn between_nodes(n: usize, &[start, end, middle]: &[f64; 3], xi: f64) -> (f64, f64) {
     let (low, left, right, width) = match n {

@@ -252,11 +252,13 @@ impl ClosedPoints {
         bond.clear();
         let dtraction = &dtraction[first..];
         let force = turned(k, predicted_tractions);
+        let along_surface = predicted_tractions.traction + k.lean * predicted_tractions.pressure;
         for (i, row) in rows.iter_mut().enumerate() {
             row.clear();
             row.extend((0..dofs).map(|c| {
-                let along_normal = dpressure[c] - k.drotation[c] * predicted_tractions.traction;
-                let resisting = dtraction[c] + damping * k.dslip[c];
+                let along_normal = dpressure[c] - k.drotation[c] * along_surface;
+                let leaning = k.lean * dpressure[c] + k.dlean[c] * predicted_tractions.pressure;
+                let resisting = dtraction[c] + damping * k.dslip[c] + leaning;
                 let along_tangent = -(resisting + k.drotation[c] * predicted_tractions.pressure);
                 (along_normal * k.normal[i] + along_tangent * k.tangent[i]) * k.length + k.dlength[c] * force[i]
             }));
@@ -287,12 +289,12 @@ impl ClosedPoints {
     }
 }
 
-/// t = p n − q s.
+/// t = p (n − κ s) − q s.
 fn turned(k: &Kinematics, Tractions { pressure: p, traction: q }: Tractions) -> Vector2<f64> {
-    k.normal * p - k.tangent * q
+    k.normal * p - k.tangent * (q + k.lean * p)
 }
 
-/// Nodal forces of a traction: w_a (p n − q s) ℓ [F].
+/// Nodal forces of a traction: w_a (p (n − κ s) − q s) ℓ [F].
 pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)> {
     let force = turned(k, Tractions { pressure: p, traction: q }) * k.length;
     let moment = k.lever.map(|Lever { at, arm }| (k.nodes[at], Vector2::new(arm.dot(&force), 0.0)));
@@ -302,7 +304,7 @@ pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)
 /// Force and moment of the master on the slave.
 ///
 /// ```text
-/// F = Σ_j t_j ℓ_j,   M = Σ_j (x_j − x₀) × t_j ℓ_j,   t = p n − (q + η v) s
+/// F = Σ_j t_j ℓ_j,   M = Σ_j (x_j − x₀) × t_j ℓ_j,   t = p (n − κ s) − (q + η v) s
 /// ```
 /// Radiation damping η v is a traction of the surfaces like friction, 0 if not used. The pressure p_w of a fluid is a load
 /// and excluded.
@@ -349,7 +351,7 @@ impl ContactPair {
         let mut sum = Resultant::default();
         for Acting { point, place, kinematics: k } in self.acting(states, x) {
             let [pressure, traction] = states[point].tractions();
-            let force = (k.normal * pressure - k.tangent * traction) * k.length;
+            let force = turned(&k, Tractions { pressure, traction }) * k.length;
             let [reference, displacement] = x.split(&place, about);
             sum.force += force;
             sum.moment += (reference + displacement).perp(&force);

@@ -7,7 +7,15 @@
 //! ```text
 //! p_j A_j = α_n ∫ φ_j ⟨−g⟩ ds                          g: gap along the normal of the edge
 //! ```
-//! which grows without a jump from the touch of the corner on (`averages.rs`). A uniform pressure still is exact, and forces act in pairs.
+//! which grows without a jump from the touch of the corner on (`averages.rs`). Its potential ½ α_n ∫ φ_j ⟨−g⟩² ds changes with g, and g along n with the
+//! motion d of the slave past a segment that is at an angle to the edge by
+//!
+//! ```text
+//! δg = (n − κ s)·d                                     κ = n·τ/s·τ, τ: direction of the segment
+//! ```
+//! so that next to a ridge of the slave p acts along n − κ s, the normal of the master, with the mean of κ over what is closed. Under a ridge of the master,
+//! where κ jumps from flank to flank, p acts along n, which is in balance as long as the ridge goes along n: past the slave energy is lost. The couple p κ g per length by which the turn of an
+//! edge changes g as well is left out; it goes with the penetration. A uniform pressure still is exact, and forces act in pairs.
 //! An open point has the least gap of what it overlaps. The corner of a block whose one side faces the other body and whose next does not is
 //! no ridge: it rests on its whole side. Which corners are ridges is found where an increment begins, so that no iterate changes it.
 //! Quadratic edges have the averages of all that they overlap: their corners have narrower hats, and enter by half as much.
@@ -32,6 +40,8 @@ struct Corner {
     node: usize,
     /// The edges or segments that meet there, the body on the left
     flanks: [usize; 2],
+    /// Tangent of half the angle by which it turns: mean slope of the flanks against what they enter [-]
+    slope: f64,
 }
 
 /// Convex corners of both sides.
@@ -77,6 +87,17 @@ impl Corners {
         let master = self.master.iter().filter(|corner| corner.flanks.iter().all(|&segment| faced[segment]));
         Ridges { slave: slave.map(|corner| corner.node).collect(), master: master.map(|corner| corner.node).collect() }
     }
+
+    /// The ridge that is nearest to a place: its distance [L], and the slope of its flanks.
+    pub fn nearest(&self, ridges: &Ridges, at: Vector2<f64>, x: &Configuration) -> Option<(f64, f64)> {
+        let among = |corners: &'_ [Corner], nodes: &'_ [usize]| -> Option<(f64, f64)> {
+            let entering = corners.iter().filter(|corner| nodes.binary_search(&corner.node).is_ok());
+            let found = entering.map(|corner| ((x.at(corner.node) - at).norm(), corner.slope));
+            found.min_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let sides = [among(&self.slave, &ridges.slave), among(&self.master, &ridges.master)];
+        sides.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
+    }
 }
 
 impl Ridges {
@@ -105,8 +126,9 @@ fn convex_corners(edges: &[[usize; 2]], positions: &[Vector2<f64>]) -> Vec<Corne
     let corner = |after: usize| {
         let node = edges[after][0];
         let before = *by_end.get(&node)?;
-        let turns = along(before).dot(&along(after)) <= CORNER && along(before).perp(&along(after)) > 0.0;
-        turns.then_some(Corner { node, flanks: [before, after] })
+        let cosine = along(before).dot(&along(after));
+        let turns = cosine <= CORNER && along(before).perp(&along(after)) > 0.0;
+        turns.then(|| Corner { node, flanks: [before, after], slope: ((1.0 - cosine) / (1.0 + cosine)).sqrt() })
     };
     let mut corners: Vec<Corner> = (0..edges.len()).filter_map(corner).collect();
     corners.sort_by_key(|corner| corner.node);

@@ -8,8 +8,13 @@
 //! a³ = 3 F R/(4 E*)          g(r) 4 r E*/3F = s ((s² − 2)(½ − arcsin(1/s)/π) + √(s² − 1)/π)          about an axis
 //! s = x/a, E* = G*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂
 //! ```
-//! Source: K. L. Johnson, Contact Mechanics, 1985, chapters 3 and 4. Where a gap grows in proportion to the distance surfaces meet at a corner,
-//! where one point is right.
+//! Where a gap grows in proportion to the distance surfaces meet at a corner. There one point is right where a block rests on its side; a ridge,
+//! which presses with both flanks of slope m, has the width of contact of a wedge,
+//!
+//! ```text
+//! 2a = 2 F/(m E*)
+//! ```
+//! and bears too much on longer edges, by as much as these are longer. Source: K. L. Johnson, Contact Mechanics, 1985, chapters 3, 4 and 5.
 
 use nalgebra::Vector2;
 
@@ -27,7 +32,9 @@ pub struct Stretch {
     pub at: Vector2<f64>,
     /// Number of its closed points
     pub closed: usize,
-    /// 2a by Hertz's theory, or the distance between the outermost closed points where that is more, as of bodies that yield or are thin [L]
+    /// Whether it is a ridge that presses
+    pub is_ridge: bool,
+    /// 2a by Hertz's theory or of a wedge, or the distance between the outermost closed points where that is more, as of bodies that yield or are thin [L]
     pub length: f64,
     /// Longest edge of both surfaces there [L]
     pub edge: f64,
@@ -89,6 +96,16 @@ impl ContactPair {
         let [first, last] = most_loaded(states)?;
         let edges = (first..=last).filter_map(|k| self.edge_at(k, &states[k], x));
         let (edge, per_edge) = edges.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
+        let force = |k: usize| states[k].contact_pressure() * states[k].length;
+        let total: f64 = (first..=last).map(force).sum();
+        let places = (first..=last).map(|k| self.points[k].at(x) * force(k));
+        let centre = places.sum::<Vector2<f64>>() / total;
+        if let Some(slope) = self.ridge_at(centre, edge, x) {
+            let closed: f64 = states[first..=last].iter().map(|state| state.length).sum();
+            let weight = x.section().weight(centre);
+            let length = (2.0 * total / (weight * slope * self.modulus)).max(closed / weight);
+            return Some(Stretch { at: centre, closed: last + 1 - first, is_ridge: true, length, edge, per_edge });
+        }
         let seen = Seen { pair: self, states, x, sequence: PointSequence::new(&self.points, x), edge };
         let ways: Vec<f64> =
             std::iter::once(Some(0.0)).chain((first..last).map(|k| seen.sequence.after(k))).collect::<Option<_>>()?;
@@ -103,8 +120,6 @@ impl ContactPair {
         if span > LONG * edge {
             return None;
         }
-        let force = |k: usize| states[k].contact_pressure() * states[k].length;
-        let total: f64 = (first..=last).map(force).sum();
         let middle = (first..=last).zip(&ways).map(|(k, way)| force(k) * way).sum::<f64>() / total;
         let [before, after] = [seen.side(first, false, middle)?, seen.side(last, true, span - middle)?];
         let (at, doubled, opens) = match [before, after] {
@@ -116,8 +131,7 @@ impl ContactPair {
                     way: 0.5 * (before[k].way + after[k].way),
                     gap: 0.5 * (before[k].gap + after[k].gap),
                 };
-                let places = (first..=last).map(|k| self.points[k].at(x) * force(k));
-                (places.sum::<Vector2<f64>>() / total, 1.0, [mean(0), mean(1)])
+                (centre, 1.0, [mean(0), mean(1)])
             }
             [Side::End(end), Side::Open(opens, other)] | [Side::Open(opens, other), Side::End(end)] => {
                 if self.corner_between(end.min(other), end.max(other), states, x) {
@@ -142,7 +156,8 @@ impl ContactPair {
             let weight = x.section().weight(at);
             half_width(far, 2.0 * doubled * total / (weight * std::f64::consts::PI * self.modulus), in_plane)
         };
-        Some(Stretch { at, closed: last + 1 - first, length: (2.0 * half).max(doubled * span), edge, per_edge })
+        let length = (2.0 * half).max(doubled * span);
+        Some(Stretch { at, closed: last + 1 - first, is_ridge: false, length, edge, per_edge })
     }
 
     /// Edge of the slave at a point, or of the master under it, whichever has the longer part to a traction, and the number of these parts.
@@ -155,6 +170,13 @@ impl ContactPair {
             (x.between(start, end).norm(), if segment.middle.is_some() { 2.0 } else { 1.0 })
         });
         [Some(slave), master].into_iter().flatten().max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))
+    }
+
+    /// Slope of the flanks of a ridge that presses within an edge of a place.
+    fn ridge_at(&self, place: Vector2<f64>, edge: f64, x: &Configuration) -> Option<f64> {
+        let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) else { return None };
+        let (distance, slope) = mortar.nearest_ridge(&self.master, surface, place, x)?;
+        (distance < edge).then_some(slope)
     }
 
     /// Whether the master has a sharp corner between the projections of two points, or near the points between them.

@@ -1,4 +1,5 @@
-//! Warning about contacts of curved surfaces that are closed on a few edges: their resultants may be right, their tractions are not.
+//! Warning about contacts of curved surfaces that are closed on a few edges, whose resultants may be right and tractions are not, and about ridges
+//! that press on long ones.
 
 use std::collections::BTreeMap;
 
@@ -62,13 +63,17 @@ fn warning(pair: &ContactPair, step: &Step, states: &[ContactState], time: f64, 
             .iter()
             .any(|support| support.at.node() == node && support.at.vector().dot(&along).abs() > ALONG * along.norm())
     };
-    let Stretch { at, closed, length, edge, per_edge } = pair
+    let Stretch { at, closed, is_ridge, length, edge, per_edge } = pair
         .stretch(states, x, is_constrained)
         .filter(|stretch| stretch.length * stretch.per_edge < FEW * stretch.edge)?;
     let both = if matches!(pair.master, Master::Mesh(_)) { " on both sides" } else { "" };
+    let wrong = match is_ridge {
+        true => "a corner presses, with a force that goes by the edges, and to and fro as it slides over them",
+        false => "its resultant may be right, but its pressure and shear are not",
+    };
     Some(format!(
         "contact `{}` at {}, t = {}: closed over {} with edges of {edge:.2e}, where the contact is about {length:.2e} \
-         long: its resultant may be right, but its pressure and shear are not; take edges of {:.1e} there{both}",
+         long: {wrong}; take edges of {:.1e} there{both}",
         pair.name,
         text::vector(at),
         time_text(time),
