@@ -498,11 +498,11 @@ impl Jumps {
         let pairs =
             (0..nodes).flat_map(|column| plain.pattern.neighbours(column).iter().map(move |&row| (row, column)));
         for (row, column) in pairs {
-            let Some(from) = plain.pattern.block(row, column) else { continue };
+            let from = plain.pattern.coupled(row, column);
             let itself = |node: usize| std::iter::once((node, 1.0)).chain(self.master_points(node).iter().copied());
             for (to_column, by_column) in itself(column) {
                 for (to_row, by_row) in itself(row) {
-                    let to = sum.pattern.block(to_row, to_column).expect("coupled with the master");
+                    let to = sum.pattern.coupled(to_row, to_column);
                     let balanced = |i: &usize| to_row == row || !fixed[2 * row + i] && !fixed[2 * to_row + i];
                     for i in (0..2).filter(balanced) {
                         for j in 0..2 {

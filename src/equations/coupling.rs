@@ -268,8 +268,7 @@ impl Layout {
 
     /// Block of two coupled nodes.
     fn block(&self, row: usize, column: usize) -> BlockPosition {
-        let found = self.pattern.block(self.original(row), self.original(column));
-        found.expect("nodes are coupled before they are added")
+        self.pattern.coupled(self.original(row), self.original(column))
     }
 
     /// Blocks of an element that water flows through, by its number among them: for each node that stands for its pressures those of all its

@@ -181,8 +181,7 @@ pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tan
             let turned = Vector2::new(force.y, -force.x) * (share / length);
             let matrix = &mut system.tangent;
             for (node, sign) in [(a, -1.0), (b, 1.0)] {
-                let block = matrix.pattern.block(b, node).expect("the pattern couples both leaders");
-                (0..2).for_each(|j| matrix.values[block.value(0, j)] += sign * turned[j]);
+                (0..2).for_each(|j| matrix.add(2 * b, 2 * node + j, sign * turned[j]));
             }
         }
     }
@@ -203,7 +202,7 @@ fn keep_length(
     let (own, across) = (e * (weight / length), perpendicular(lever) / length);
     matrix.turn_rows(2 * b + 1, own.into(), across.into());
     for (node, sign) in [(a, -1.0), (b, 1.0)] {
-        let block = matrix.pattern.block(b, node).expect("the pattern couples both leaders");
+        let block = matrix.pattern.coupled(b, node);
         (0..2).for_each(|j| matrix.values[block.value(1, j)] = sign * own[j]);
     }
 }
@@ -237,8 +236,7 @@ fn follow(model: &Model, weight: f64, matrix: &mut SparseMatrix) {
         for (i, dof) in follower.dofs() {
             matrix.replace_row(dof, weight);
             for (leader, g) in &follower.leaders {
-                let block = matrix.pattern.block(follower.node, *leader).expect("the pattern couples followers");
-                (0..2).for_each(|j| matrix.values[block.value(i, j)] -= weight * g[(i, j)]);
+                (0..2).for_each(|j| matrix.add(dof, 2 * leader + j, -weight * g[(i, j)]));
             }
         }
     }
@@ -337,9 +335,11 @@ impl Turning {
         let mut rows: BTreeMap<usize, (Matrix2<f64>, f64)> = BTreeMap::new();
         for (node, share) in self.nodes(model) {
             for &row in mass.pattern.neighbours(node) {
-                let Some(block) = mass.pattern.block(row, node) else { continue };
+                let mass = mass.values[mass.pattern.coupled(row, node).value(0, 0)];
+                if mass == 0.0 {
+                    continue;
+                }
                 let (arms, total) = rows.entry(row).or_default();
-                let mass = mass.values[block.value(0, 0)];
                 *arms += (share - self.reference) * mass;
                 *total += if node == a { 0.0 } else { mass };
             }
@@ -347,12 +347,11 @@ impl Turning {
         for (row, (arms, total)) in rows {
             let along = arms * beyond;
             for (node, sign) in [(a, -1.0), (b, 1.0)] {
-                let Some(block) = tangent.pattern.block(row, node) else { continue };
                 for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                    tangent.values[block.value(i, j)] += sign * along[(i, j)];
+                    tangent.add(2 * row + i, 2 * node + j, sign * along[(i, j)]);
                     // If a support prescribes A independent of u, the other nodes do not move with it.
                     if node == a && i == j && factors[2 * a + j] == 0.0 {
-                        tangent.values[block.value(i, j)] -= rate * total;
+                        tangent.add(2 * row + i, 2 * node + j, -rate * total);
                     }
                 }
             }

@@ -38,7 +38,7 @@ impl Sums<'_> {
     pub fn stiffen(&mut self, row: usize, column: usize, stiffness: f64) {
         if let Some(tangent) = &mut self.tangent {
             let own = 2 * self.layout.original(row / 2);
-            tangent.add_own(own + row % 2, own + column % 2, stiffness);
+            tangent.add(own + row % 2, own + column % 2, stiffness);
         }
     }
 

@@ -112,8 +112,8 @@ pub fn tie(model: &Model, matrix: &mut SparseMatrix, weight: f64) {
     for &(copy, original) in model.ties.pairs() {
         for d in 0..2 {
             matrix.replace_row(2 * copy + d, weight);
-            let coupled = matrix.pattern.block(copy, original).expect("the pattern couples copies");
-            matrix.values[coupled.value(d, d)] = -weight;
+            let block = matrix.pattern.coupled(copy, original);
+            matrix.values[block.value(d, d)] = -weight;
         }
     }
 }

@@ -126,6 +126,15 @@ impl Pattern {
         Some(BlockPosition { first: first as u32, column_length: 2 * neighbours.len() as u32 })
     }
 
+    /// Position of the block of two nodes that are coupled, because the pattern is made so.
+    ///
+    /// # Panics
+    /// If they are not: what is added there would be lost without a word.
+    #[track_caller]
+    pub fn coupled(&self, row: usize, column: usize) -> BlockPosition {
+        self.block(row, column).unwrap_or_else(|| panic!("nodes {row} and {column} are not coupled in the pattern"))
+    }
+
     /// Scalar column starts and row indices (compressed columns, rows ascending).
     pub fn scalar(&self) -> (Vec<usize>, Vec<usize>) {
         let mut columns = vec![0];
@@ -182,14 +191,13 @@ impl SparseMatrix {
 
     /// Adds `value` to the diagonal entry of one dof: A_ii += value.
     pub fn add_diagonal(&mut self, dof: usize, value: f64) {
-        self.add_own(dof, dof, value);
+        self.add(dof, dof, value);
     }
 
-    /// Adds to the entry of two dofs of one node.
-    pub fn add_own(&mut self, row: usize, column: usize, value: f64) {
-        if let Some(block) = self.pattern.block(row / 2, column / 2) {
-            self.values[block.value(row % 2, column % 2)] += value;
-        }
+    /// Adds to the entry of two dofs, whose nodes are coupled.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        let block = self.pattern.coupled(row / 2, column / 2);
+        self.values[block.value(row % 2, column % 2)] += value;
     }
 
     /// Adds another matrix on the same pattern, each column multiplied by its factor.
@@ -208,7 +216,7 @@ impl SparseMatrix {
         (0..self.size())
             .map(|dof| {
                 let (node, d) = (dof / 2, dof % 2);
-                self.pattern.block(node, node).map_or(0.0, |block| self.values[block.value(d, d)])
+                self.values[self.pattern.coupled(node, node).value(d, d)]
             })
             .collect()
     }
@@ -216,10 +224,10 @@ impl SparseMatrix {
     /// Extends the marks to all nodes that nonzero values couple with marked ones, directly or through others.
     pub fn reach(&self, marked: &mut [bool]) {
         let couples = |row: usize, column: usize| {
-            let of = |block: BlockPosition| (0..4).any(|k| self.values[block.value(k / 2, k % 2)] != 0.0);
-            [(row, column), (column, row)]
-                .into_iter()
-                .any(|(row, column)| self.pattern.block(row, column).is_some_and(of))
+            [(row, column), (column, row)].into_iter().any(|(row, column)| {
+                let block = self.pattern.coupled(row, column);
+                (0..4).any(|k| self.values[block.value(k / 2, k % 2)] != 0.0)
+            })
         };
         let mut next: Vec<usize> = (0..marked.len()).filter(|&node| marked[node]).collect();
         while let Some(node) = next.pop() {
@@ -246,26 +254,26 @@ impl SparseMatrix {
         // The pattern is symmetric: the columns with an entry in this row are the neighbours of its node.
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
             let column = self.pattern.rows[k];
-            if let Some(block) = self.pattern.block(node, column) {
-                for j in 0..2 {
-                    self.values[block.value(d, j)] = if column == node && j == d { diagonal } else { 0.0 };
-                }
+            let block = self.pattern.coupled(node, column);
+            for j in 0..2 {
+                self.values[block.value(d, j)] = if column == node && j == d { diagonal } else { 0.0 };
             }
         }
     }
 
-    /// Adds a multiple of the equation of one dof to that of another, whose node must be coupled with the same nodes.
+    /// Adds a multiple of the equation of one dof to that of another, whose node must be coupled with all that this equation has values of:
+    /// columns of zeros, as those of copies on periodic sides, may be missing.
     pub fn add_row(&mut self, from_dof: usize, to_dof: usize, share: f64) {
         let [from, to] = [from_dof / 2, to_dof / 2];
         for k in self.pattern.starts[from]..self.pattern.starts[from + 1] {
             let column = self.pattern.rows[k];
-            let (Some(source), Some(target)) = (self.pattern.block(from, column), self.pattern.block(to, column))
-            else {
+            let source = self.pattern.coupled(from, column);
+            let added = [0, 1].map(|c| share * self.values[source.value(from_dof % 2, c)]);
+            if added == [0.0; 2] {
                 continue;
-            };
-            for c in 0..2 {
-                self.values[target.value(to_dof % 2, c)] += share * self.values[source.value(from_dof % 2, c)];
             }
+            let target = self.pattern.coupled(to, column);
+            (0..2).for_each(|c| self.values[target.value(to_dof % 2, c)] += added[c]);
         }
     }
 
@@ -279,7 +287,7 @@ impl SparseMatrix {
         self.reversed ^= unit < 0.0;
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
             let column = self.pattern.rows[k];
-            let Some(block) = self.pattern.block(node, column) else { continue };
+            let block = self.pattern.coupled(node, column);
             for (j, own) in own.into_iter().enumerate() {
                 let rows = [0, 1].map(|i| self.values[block.value(i, j)]);
                 self.values[block.value(1 - d, j)] = across[0] * rows[0] + across[1] * rows[1];

@@ -140,9 +140,7 @@ impl Resistance {
         let mut matrix = SparseMatrix::zero(Arc::new(pattern));
         for (row, column, block) in within() {
             for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
-                if let Some(at) = matrix.pattern.block(2 * row + i / 2, 2 * column + j / 2) {
-                    matrix.values[at.value(i % 2, j % 2)] = block[(i, j)];
-                }
+                matrix.add(4 * row + i, 4 * column + j, block[(i, j)]);
             }
         }
         (0..group.len()).for_each(|k| matrix.add_diagonal(4 * k + 3, 1.0));

@@ -83,9 +83,8 @@ fn resistance(
     for (column, part) in parts.of_node.iter().enumerate() {
         let Some(part) = *part else { continue };
         for &row in tangent.pattern.neighbours(column) {
-            let (Some(other), Some(block)) = (parts.of_node[row], tangent.pattern.block(row, column)) else {
-                continue;
-            };
+            let Some(other) = parts.of_node[row] else { continue };
+            let block = tangent.pattern.coupled(row, column);
             let stiffness = Matrix2::from_fn(|i, j| tangent.values[block.value(i, j)]);
             if row == column {
                 let diagonal = stiffness.diagonal().abs();
@@ -120,7 +119,7 @@ fn null_motion_of_a_node(model: &Model, tangent: &SparseMatrix) -> Option<String
         lone[flow.first..flow.first + flow.count() / 2].fill(false);
     }
     (0..lone.len()).filter(|&node| lone[node]).find_map(|node| {
-        let block = tangent.pattern.block(node, node)?;
+        let block = tangent.pattern.coupled(node, node);
         let stiffness = Matrix2::from_fn(|i, j| tangent.values[block.value(i, j)]);
         let along = free_direction(&stiffness)?;
         if let Some(body) = model.mesh.rigid_bodies.iter().find(|body| body.nodes().contains(&node)) {

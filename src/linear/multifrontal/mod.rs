@@ -60,8 +60,8 @@ impl Constrained {
         let one = |dof: usize| {
             let blocks = matrix.pattern.column(dof / 2);
             let column = blocks.flat_map(|block| [0, 1].map(|i| matrix.values[block.value(i, dof % 2)])).collect();
-            let own = matrix.pattern.block(dof / 2, dof / 2);
-            let diagonal = own.map_or(0.0, |own| matrix.values[own.value(dof % 2, dof % 2)]);
+            let own = matrix.pattern.coupled(dof / 2, dof / 2);
+            let diagonal = matrix.values[own.value(dof % 2, dof % 2)];
             Self { dof, diagonal, column }
         };
         (0..matrix.size()).filter(|&dof| matrix.constrained[dof]).map(one).collect()

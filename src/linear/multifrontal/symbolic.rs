@@ -212,10 +212,9 @@ fn entries(pattern: &Pattern, elimination: &Elimination, fronts: &mut [Front]) -
         front.lower = start..entries.len();
         for row in (first..end).filter(|_| !front.symmetric) {
             for &column in pattern.neighbours(nodes[row]).iter().filter(|&&column| positions[column] >= end) {
-                if let Some(block) = pattern.block(nodes[row], column) {
-                    let target = (place[positions[column]] - pivots + place[row] * (size - pivots)) as u32;
-                    entries.push(Entry { block, row: nodes[row] as u32, column: column as u32, target });
-                }
+                let block = pattern.coupled(nodes[row], column);
+                let target = (place[positions[column]] - pivots + place[row] * (size - pivots)) as u32;
+                entries.push(Entry { block, row: nodes[row] as u32, column: column as u32, target });
             }
         }
         front.upper = front.lower.end..entries.len();

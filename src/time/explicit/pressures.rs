@@ -70,9 +70,7 @@ impl PressureBlock {
         let pattern = Pattern::new(count, pairs.iter().map(|pair| &pair[..])).symmetric_but(vec![false; count]);
         let mut places = vec![0; pattern.values()];
         for [row, column] in pairs.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]) {
-            let (Some(own), Some(whole)) = (pattern.block(row, column), all.block(first + row, first + column)) else {
-                continue;
-            };
+            let (own, whole) = (pattern.coupled(row, column), all.coupled(first + row, first + column));
             for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                 places[own.value(i, j)] = whole.value(i, j);
             }
