@@ -1,17 +1,20 @@
-//! Automatic differentiation with dual numbers.
+//! Automatic differentiation with dual numbers (`laws/dual.rs`) by the positions of nodes: there may be any number of these, so that a
+//! mean is computed with its derivatives by `AT_ONCE` unknowns, then by the next ones.
+
+use crate::laws::dual;
 
 /// Numbers for averages: plain values, or values with their variations.
 pub trait Number: Clone + Default {
     /// Creates a constant.
     fn constant(value: f64) -> Self;
 
-    /// Creates unknown number `k` of `n`.
-    fn unknown(value: f64, k: usize, n: usize) -> Self;
+    /// Creates unknown number `k` of those by which it is differentiated at once; a constant, if it is none of them.
+    fn unknown(value: f64, k: usize) -> Self;
 
     /// The value without its variations.
     fn value(&self) -> f64;
 
-    /// The derivatives with respect to the current unknowns; empty for a constant.
+    /// The derivatives with respect to the current unknowns; none of a plain value.
     fn gradient(&self) -> &[f64];
 
     /// f(self), given the value f and the derivative f′.
@@ -61,7 +64,7 @@ impl Number for f64 {
         value
     }
 
-    fn unknown(value: f64, _: usize, _: usize) -> Self {
+    fn unknown(value: f64, _: usize) -> Self {
         value
     }
 
@@ -86,40 +89,25 @@ impl Number for f64 {
     }
 }
 
-/// Number of derivatives stored without heap allocation: those of eight nodes.
-const FEW: usize = 16;
+/// Number of derivatives that are computed at once: those with respect to the positions of eight nodes.
+pub(super) const AT_ONCE: usize = 16;
 
-/// A value and its derivatives with respect to the current unknowns.
-#[derive(Clone, Debug, Default)]
-pub struct Dual {
-    value: f64,
-    count: usize,
-    few: [f64; FEW],
-    /// All derivatives if there are more
-    many: Vec<f64>,
-}
+/// A value and its derivatives with respect to some of the unknowns.
+pub(super) type Dual = dual::Dual<AT_ONCE>;
 
-impl Dual {
-    /// Creates a value with `count` zero derivatives.
-    fn with(value: f64, count: usize) -> Self {
-        let many = if count > FEW { vec![0.0; count] } else { Vec::new() };
-        Self { value, count, few: [0.0; FEW], many }
-    }
-
-    fn rates(&mut self) -> &mut [f64] {
-        if self.count > FEW { &mut self.many } else { &mut self.few[..self.count] }
+impl Default for Dual {
+    fn default() -> Self {
+        Self::from(0.0)
     }
 }
 
 impl Number for Dual {
     fn constant(value: f64) -> Self {
-        Self::with(value, 0)
+        Self::from(value)
     }
 
-    fn unknown(value: f64, k: usize, n: usize) -> Self {
-        let mut unknown = Self::with(value, n);
-        unknown.rates()[k] = 1.0;
-        unknown
+    fn unknown(value: f64, k: usize) -> Self {
+        Self { value, by: std::array::from_fn(|own| f64::from(own == k)) }
     }
 
     fn value(&self) -> f64 {
@@ -127,31 +115,19 @@ impl Number for Dual {
     }
 
     fn gradient(&self) -> &[f64] {
-        if self.count > FEW { &self.many } else { &self.few[..self.count] }
+        &self.by
     }
 
     fn map(&self, value: f64, derivative: f64) -> Self {
-        let mut mapped = Self::with(value, self.count);
-        mapped.rates().iter_mut().zip(self.gradient()).for_each(|(rate, own)| *rate = derivative * own);
-        mapped
+        dual::Number::map(*self, value, derivative)
     }
 
-    fn join(value: f64, [a, b]: [&Self; 2], [da, db]: [f64; 2]) -> Self {
-        if b.count == 0 {
-            return a.map(value, da);
-        }
-        let mut joined = b.map(value, db);
-        joined.rates().iter_mut().zip(a.gradient()).for_each(|(rate, own)| *rate += da * own);
-        joined
+    fn join(value: f64, [a, b]: [&Self; 2], by: [f64; 2]) -> Self {
+        Self::join(value, [*a, *b], by)
     }
 
     fn accumulate(&mut self, factor: f64, other: &Self) {
-        if self.count == 0 {
-            *self = Self { value: self.value, ..other.map(0.0, factor) };
-        } else {
-            self.rates().iter_mut().zip(other.gradient()).for_each(|(rate, own)| *rate += factor * own);
-        }
-        self.value += factor * other.value;
+        *self = Self::join(self.value + factor * other.value, [*self, *other], [1.0, factor]);
     }
 }
 

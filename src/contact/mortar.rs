@@ -14,7 +14,7 @@
 //!
 //! n_j is the normal of the edges at the point, oriented into the slave: s_j is the direction of ∫ φ_j dx. Since Σ_j φ_j = 1, a
 //! uniform pressure produces the exact forces on both sides: the patch test is passed. A node at a corner of more than 45°
-//! counts as one point per side. All variations are computed with [`Dual`] numbers.
+//! counts as one point per side. All variations are computed with dual numbers.
 //!
 //! Edges against a rigid body are not divided, see below.
 //!
@@ -23,13 +23,11 @@
 //! For a rigid body nothing is divided. g_j and Δu_t,j are means over the Gauss points between two nodes, each with its own
 //! projection, and n_j is the direction of the mean of their normals. One function sums all values with their variations.
 
-use std::iter::repeat;
-
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::averages::{Averages, Extent, Pieces};
-use super::dual::{Dual, DualVector, Number};
+use super::dual::{AT_ONCE, Dual, DualVector, Number};
 pub use super::hats::Hats;
 use super::hats::{Part, centre, gauss_around, parts};
 use super::kinematics::{Kinematics, Lever, Meeting, past_rigid};
@@ -199,14 +197,34 @@ impl Facing<'_> {
         room: &mut Averaging<N>,
     ) -> Option<Meeting> {
         let master_point = self.master_point(point)?;
-        let Averaging { frame, averages, relative } = room;
-        self.list(point, &mut frame.nodes);
+        let nodes = &mut room.frame.nodes;
+        self.list(point, nodes);
         for &(node, _) in old.into_iter().flatten() {
-            if !frame.nodes.contains(&node) {
-                frame.nodes.push(node);
+            if !nodes.contains(&node) {
+                nodes.push(node);
             }
         }
-        frame.place(x);
+        let (unknowns, mut gap) = (if k.varied { 2 * nodes.len() } else { 1 }, 0.0);
+        for first in (0..unknowns).step_by(AT_ONCE) {
+            room.frame.place(x, first);
+            let place = self.mean_place(point, old, room)?;
+            if first == 0 {
+                gap = place.gap.value();
+                place.write(k);
+            }
+            place.write_variations(first, k);
+        }
+        Some(Meeting { gap, master_point })
+    }
+
+    /// Mean projection of a point whose nodes are placed.
+    fn mean_place<'a, N: Number>(
+        &self,
+        point: usize,
+        old: Option<&Weights>,
+        room: &'a mut Averaging<N>,
+    ) -> Option<MeanPlace<'a, N>> {
+        let Averaging { frame, averages, relative } = room;
         if !self.average(point, frame, averages) {
             return None;
         }
@@ -225,17 +243,15 @@ impl Facing<'_> {
             slip = s.dot(&moved.minus(&mean));
         }
         let length = averages.length().scaled(self.surface.share());
-        let met = Meeting { gap: gap.value(), master_point };
         let lean = averages.lean().filter(|_| self.is_at_ridge(point));
-        MeanPlace { nodes: &frame.nodes, relative, gap, slip, length, lean, axes: [s, n] }.write(k);
-        Some(met)
+        Some(MeanPlace { nodes: &frame.nodes, relative, gap, slip, length, lean, axes: [s, n] })
     }
 
     /// Computes the weights of r_j in a configuration in place of `found`; empty without a projection on the master.
     pub fn weigh(&self, point: usize, x: &Configuration, room: &mut Room, found: &mut Weights) {
         let Averaging { frame, averages, .. } = &mut room.values;
         self.list(point, &mut frame.nodes);
-        frame.place(x);
+        frame.place(x, 0);
         found.clear();
         if self.average(point, frame, averages) {
             found.extend(frame.nodes.iter().copied().zip(averages.means()));
@@ -392,31 +408,32 @@ struct MeanPlace<'a, N> {
 }
 
 impl<N: Number> MeanPlace<'_, N> {
-    /// Writes it, with its variations on request, to the kinematics of the point.
-    pub fn write(self, k: &mut Kinematics) {
-        let Self { nodes, relative, gap, slip, length, lean, axes: [s, n] } = self;
+    /// Writes it to the kinematics of the point, with room for its variations on request.
+    pub fn write(&self, k: &mut Kinematics) {
+        let Self { nodes, relative, slip, length, lean, axes: [s, n], .. } = self;
         k.begin(Vector2::new(n.x.value(), n.y.value()));
         k.nodes.extend_from_slice(nodes);
         k.clear();
         k.tangent = Vector2::new(s.x.value(), s.y.value());
         (k.slip, k.length) = (slip.value(), length.value());
         k.lean = lean.as_ref().map_or(0.0, Number::value);
-        k.relative.iter_mut().zip(relative).for_each(|(value, w)| *value = w.value());
-        if !k.varied {
-            return;
-        }
-        let set = |row: &mut Vec<f64>, d: &N| row[..d.gradient().len()].copy_from_slice(d.gradient());
-        set(&mut k.dgap, &gap);
-        set(&mut k.dslip, &slip);
-        set(&mut k.dlength, &length);
+        k.relative.iter_mut().zip(*relative).for_each(|(value, w)| *value = w.value());
+        k.changing.extend((0..relative.len()).filter(|_| k.varied));
+        k.drelative.resize(k.changing.len() * k.dgap.len(), 0.0);
+    }
+
+    /// Writes its variations with the unknowns from number `first` on.
+    pub fn write_variations(&self, first: usize, k: &mut Kinematics) {
+        let Self { relative, gap, slip, length, lean, axes: [s, _], .. } = self;
+        let set = |row: &mut [f64], d: &N| row[first..].iter_mut().zip(d.gradient()).for_each(|(to, by)| *to = *by);
+        set(&mut k.dgap, gap);
+        set(&mut k.dslip, slip);
+        set(&mut k.dlength, length);
         lean.iter().for_each(|lean| set(&mut k.dlean, lean));
-        let [dx, dy] = [&s.x, &s.y].map(|d| d.gradient().iter().copied().chain(repeat(0.0)));
-        let turns = k.drotation.iter_mut().zip(dx.zip(dy));
+        let turns = k.drotation.iter_mut().skip(first).zip(s.x.gradient().iter().zip(s.y.gradient()));
         turns.for_each(|(turn, (dx, dy))| *turn = dx * k.normal.x + dy * k.normal.y);
-        for (a, w) in relative.iter().enumerate() {
-            k.changing.push(a);
-            k.drelative.extend(w.gradient().iter().copied().chain(repeat(0.0)).take(k.dgap.len()));
-        }
+        let rows = k.drelative.chunks_exact_mut(k.dgap.len().max(1));
+        rows.zip(*relative).for_each(|(row, w)| set(row, w));
     }
 }
 

@@ -294,15 +294,15 @@ impl<N> Default for Frame<N> {
 }
 
 impl<N: Number> Frame<N> {
-    /// Computes the positions of its nodes.
-    pub fn place(&mut self, x: &Configuration) {
+    /// Computes the positions of its nodes, for derivatives by the unknowns from number `first` on.
+    pub fn place(&mut self, x: &Configuration, first: usize) {
         let Self { nodes, origin, positions } = self;
-        let n = 2 * nodes.len();
         *origin = (x.at(nodes[0]), x.section());
         positions.clear();
         positions.extend(nodes.iter().enumerate().map(|(k, &node)| {
             let at = x.between(nodes[0], node);
-            DualVector { x: N::unknown(at.x, 2 * k, n), y: N::unknown(at.y, 2 * k + 1, n) }
+            let unknown = |value: f64, k: usize| N::unknown(value, k.wrapping_sub(first));
+            DualVector { x: unknown(at.x, 2 * k), y: unknown(at.y, 2 * k + 1) }
         }));
     }
 

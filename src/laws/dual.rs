@@ -1,12 +1,10 @@
 //! Numbers with derivatives along a few directions: those of a tangent, Δu_t and p or the components of a strain, or parameters of a
-//! law. The equations of a law are written once, for both kinds of numbers.
-//!
-//! The numbers of `contact/dual.rs` have derivatives by as many unknowns as the nodes of an average, which are counted at run time.
+//! law; and positions of nodes, some at a time (`contact/dual.rs`). The equations are written once, for both kinds of numbers.
 
 use std::ops::{Add, Div, Mul, Sub};
 
 /// A number, or a number with its derivatives.
-pub(super) trait Number:
+pub(crate) trait Number:
     Copy
     + PartialEq
     + From<f64>
@@ -79,7 +77,7 @@ impl Number for f64 {
 
 /// A number with its derivatives along some directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Dual<const N: usize = 2> {
+pub(crate) struct Dual<const N: usize = 2> {
     pub value: f64,
     pub by: [f64; N],
 }
@@ -106,7 +104,7 @@ impl<const N: usize> Number for Dual<N> {
 impl<const N: usize> Dual<N> {
     /// A function of two numbers, given its value and partial derivatives.
     #[inline]
-    fn join(value: f64, [a, b]: [Self; 2], [by_a, by_b]: [f64; 2]) -> Self {
+    pub fn join(value: f64, [a, b]: [Self; 2], [by_a, by_b]: [f64; 2]) -> Self {
         Self { value, by: std::array::from_fn(|k| by_a * a.by[k] + by_b * b.by[k]) }
     }
 }

@@ -6,7 +6,7 @@ pub mod parameter;
 #[doc(hidden)]
 pub mod approach;
 pub mod bulk;
-mod dual;
+pub(crate) mod dual;
 pub mod friction;
 pub(crate) mod tableau;
 pub(crate) mod text;
