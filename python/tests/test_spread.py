@@ -13,7 +13,7 @@ import fecontact as fc
 DEVIATIONS = {FRICTION + "mu_k": 0.004, FRICTION + "mu_s": 0.004, "bodies.block.material.E": 0.2}
 VALUES = {FRICTION + "mu_k": 0.2, FRICTION + "mu_s": 0.4, "bodies.block.material.E": 10.0}
 # SAMPLES=400 takes minutes.
-SAMPLES = int(os.environ.get("SAMPLES", "40"))
+SAMPLES = int(os.environ.get("SAMPLES", "24"))
 
 
 @pytest.fixture(scope="module")

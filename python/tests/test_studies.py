@@ -39,8 +39,8 @@ def fails(result: fc.Result) -> float:
     raise ArithmeticError("no number")
 
 
-def slider(duration: float = 2000.0) -> fc.Case:
-    """A block of one node on a spring: a run of nearly 100 000 increments a second, with a checkpoint every 0.1 s."""
+def slider(duration: float = 500.0) -> fc.Case:
+    """A block of one node on a spring: seconds of work, with a checkpoint every 0.1 s, so that there is time to kill it in mid run."""
     document = json.loads((REPOSITORY / "cases" / "paper" / "spring_mass_1.json").read_text())
     document["steps"][0]["duration"] = duration
     document["output"] = {"fields": False, "checkpoint": 0.002}
@@ -262,7 +262,7 @@ def script(out: Path, **options: Any) -> subprocess.Popen[str]:
     """A study in a process of its own."""
     text = (
         f"import sys; sys.path.insert(0, {str(HERE)!r})\nfrom test_studies import *\n"
-        f"if __name__ == '__main__':\n    studies.study(slider(1000.0), {{MU_S: [0.4, 0.5]}}, peak, {str(out)!r}, workers=2, progress=False)\n"
+        f"if __name__ == '__main__':\n    studies.study(slider(), {{MU_S: [0.4, 0.5]}}, peak, {str(out)!r}, workers=2, progress=False)\n"
     )
     file = out.parent / "script.py"
     file.write_text(text)
@@ -283,9 +283,9 @@ def test_a_study_that_ends_leaves_no_solver_and_goes_on(tmp_path: Path, by: sign
     if by == signal.SIGINT:
         written = pd.read_csv(out / "table.csv")["status"]
         assert set(written) <= {"pending", "completed"} and "pending" in set(written)
-    table = studies.study(slider(1000.0), {MU_S: [0.4, 0.5]}, peak, out, workers=2, progress=False)
+    table = studies.study(slider(), {MU_S: [0.4, 0.5]}, peak, out, workers=2, progress=False)
     assert set(table["status"]) == {"completed"} and any(record["resumed"] for record in records(out).values())
-    same_as_alone(out, slider(1000.0), table, 1, tmp_path / "alone")
+    same_as_alone(out, slider(), table, 1, tmp_path / "alone")
 
 
 def test_runs_write_fields_only_where_the_case_asks_for_them(tmp_path: Path) -> None:
