@@ -3,6 +3,7 @@
 //! The equations are those of `pore_flow.rs`.
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
+use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 use super::sums::{PressureTangent, Sums, TrialFailure};
@@ -90,6 +91,7 @@ fn jacobian(wet: &WetElement, (f, hoop): &(Matrix2<f64>, f64)) -> Result<f64, Ma
 }
 
 /// ∂J/∂u of every node of a deformed element at a point.
+#[inline(always)]
 fn opens_by(wet: &WetElement, point: &WetPoint, (f, hoop): &(Matrix2<f64>, f64)) -> [Vector2<f64>; MOST_NODES] {
     let mut by = [Vector2::zeros(); MOST_NODES];
     let (area, plane) = if wet.is_linear { (Matrix2::identity(), 1.0) } else { (cofactor(f) * *hoop, f.determinant()) };
@@ -156,7 +158,8 @@ impl Increment<'_> {
         for batch in elements.chunks(BATCH) {
             let evaluate = |(answer, (_, given)): (&mut Answer, &(usize, &WetElement))| {
                 let wet = activated.wet(given);
-                self.evaluate(wet, wanted, answer).map_err(|cause| TrialFailure::material(model, wet.element, cause))
+                let found = Arch::new().dispatch(Evaluation { increment: self, wet, wanted, answer });
+                found.map_err(|cause| TrialFailure::material(model, wet.element, cause))
             };
             let found = answers.par_iter_mut().zip(batch).with_min_len(MANY).map(evaluate);
             // The first failure by number, whatever the threads do
@@ -196,6 +199,7 @@ impl Increment<'_> {
     }
 
     /// Computes what an element adds, and the stiffness by (5) if it is wanted.
+    #[inline(always)]
     fn evaluate(&self, wet: &WetElement, wanted: bool, answer: &mut Answer) -> Result<(), MaterialFailure> {
         let Self { flow, trial, u, times, .. } = self;
         let (old, corners) = (&trial.old.displacement, wet.pressures.len());
@@ -249,6 +253,7 @@ impl Increment<'_> {
     }
 
     /// Adds what opens and flows at a point.
+    #[inline(always)]
     fn add_point(
         &self,
         wet: &WetElement,
@@ -283,6 +288,7 @@ impl Increment<'_> {
 /// ```text
 /// J = h det F:  ∂²J = h ∂² det F + ∂ det F ∂h + ∂h ∂ det F,   ∂² det F/∂u_ax ∂u_by = N_a,x N_b,y − N_a,y N_b,x,   h by u_x alone
 /// ```
+#[inline(always)]
 fn stiffen(
     wet: &WetElement,
     moved: &[Vector2<f64>; MOST_NODES],
@@ -317,6 +323,23 @@ fn stiffen(
             stiffness[(2 * b + 1) * dofs + 2 * a] -= turns;
             stiffness[2 * b * dofs + 2 * a + 1] += turns;
         }
+    }
+}
+
+/// An element in an increment, compiled for vectors as long as the processor has them.
+struct Evaluation<'a> {
+    increment: &'a Increment<'a>,
+    wet: &'a WetElement,
+    wanted: bool,
+    answer: &'a mut Answer,
+}
+
+impl NullaryFnOnce for Evaluation<'_> {
+    type Output = Result<(), MaterialFailure>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        self.increment.evaluate(self.wet, self.wanted, self.answer)
     }
 }
 

@@ -499,6 +499,7 @@ impl WetElement {
     }
 
     /// F in the plane, and the stretch out of it, at a point.
+    #[inline(always)]
     pub fn deformed(&self, point: &WetPoint, moved: &[Vector2<f64>; MOST_NODES]) -> (Matrix2<f64>, f64) {
         let (mut f, mut hoop) = (Matrix2::identity(), 1.0);
         moved.iter().zip(&point.gradients).for_each(|(moved, gradient)| f += moved * gradient.transpose());
