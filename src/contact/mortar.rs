@@ -134,6 +134,11 @@ impl Mortar {
         edges.for_each(|((edge, &depth), cut)| cut.cut(edge, depth, surface, index, x));
     }
 
+    /// Whether the master has corners that may enter first.
+    pub fn has_corners_of_master(&self) -> bool {
+        self.corners.are_of_master()
+    }
+
     /// Corners that enter first, given the slave edges as cut in a configuration.
     pub fn ridges(&self, surface: &Surface, overlaps: &Overlaps, x: &Configuration) -> Ridges {
         self.corners.entering(&self.edges, surface, overlaps, x)

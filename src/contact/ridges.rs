@@ -64,6 +64,11 @@ impl Corners {
         Self { slave: convex_corners(&slave, positions), master: convex_corners(&master, positions) }
     }
 
+    /// Whether the master has any.
+    pub fn are_of_master(&self) -> bool {
+        !self.master.is_empty()
+    }
+
     /// Those whose flanks both face the other side, in the configuration in which edges were cut.
     pub fn entering(&self, edges: &[Vec<usize>], surface: &Surface, overlaps: &Overlaps, x: &Configuration) -> Ridges {
         let is_flank = |edge: usize, overlap: &Overlap| {

@@ -32,6 +32,7 @@
 
 use nalgebra::Vector2;
 
+use crate::contact::mortar::Mortar;
 use crate::contact::pair::{BothSurfaces, ContactPair};
 use crate::contact::{ContactState, Master};
 use crate::equations::contacts::Springs;
@@ -169,6 +170,10 @@ struct StepError {
 
 /// Remedy for the energy of static steps.
 const STATIC: &str = "take shorter increments (dt.initial, dt.max)";
+
+/// The same where the master has corners: forces act along the normal of the slave, but next to a corner of its own.
+const STATIC_CORNERS: &str = "where a corner of the master is dragged, less is lost or gained with slave and master exchanged; else take shorter \
+                              increments (dt.initial, dt.max)";
 
 /// Remedy for the energy that a scheme damps.
 const DAMPS: &str =
@@ -538,9 +543,15 @@ fn round_off(model: &Model, Scales { part, stiffness, contacts }: &Scales, state
     f64::EPSILON * stiffest * part.size.max(reach) * (count as f64).sqrt()
 }
 
+/// Whether a master has corners that may press between the means of a slave's edges.
+fn has_corners(model: &Model) -> bool {
+    model.contacts.iter().filter_map(|pair| pair.mortar.as_ref()).any(Mortar::has_corners_of_master)
+}
+
 /// Remedy for an energy error in a step.
 fn remedy(model: &Model, step: &Step) -> &'static str {
     let keeps_all = match step.scheme {
+        Scheme::Static if has_corners(model) => return STATIC_CORNERS,
         Scheme::Static => return STATIC,
         Scheme::QuasiDynamic { .. } => return "take fewer steps per row of results (quasi_dynamic.every)",
         Scheme::Explicit { .. } => return "lower the safety of the explicit scheme",

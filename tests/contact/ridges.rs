@@ -101,3 +101,26 @@ fn corners_that_are_closed_press_evenly() {
         }
     }
 }
+
+/// A ridge that is dragged over long edges loses energy, the more with the surface that it enters as slave; the warning names the other way round.
+#[test]
+fn the_energy_of_a_dragged_ridge_names_the_other_role() {
+    let told = |slave: &str| {
+        let mut case = ridge(slave, 1);
+        let mut drag = case["steps"][0].clone();
+        (drag["name"], drag["supports"][1]["ux"]) = (json!("drag"), json!(1.5));
+        drag["supports"][1]["uy"] = json!(-0.6);
+        case["steps"].as_array_mut().expect("steps").push(drag);
+        let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(&case)));
+        fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
+        warnings.list.into_iter().find(|told| told.starts_with("energy balance")).expect("a warning")
+    };
+    let [surface, flank] = [told("surface"), told("flank")];
+    println!("{surface}\n{flank}");
+    let share = |told: &str| -> f64 {
+        let (before, _) = told.split_once(" % of").expect("a share");
+        before.rsplit(' ').next().and_then(|text| text.parse().ok()).expect("a number")
+    };
+    assert!(surface.contains("with slave and master exchanged") && !flank.contains("exchanged"));
+    assert!(share(&surface) > 1.3 * share(&flank), "{surface}, {flank}");
+}
