@@ -1,5 +1,5 @@
 //! Automatic differentiation with dual numbers (`laws/dual.rs`) by the positions of nodes: there may be any number of these, so that a
-//! mean is computed with its derivatives by `AT_ONCE` unknowns, then by the next ones.
+//! mean is computed with its derivatives by `COORDINATES` unknowns, then by the next ones.
 
 use crate::laws::dual;
 
@@ -90,18 +90,18 @@ impl Number for f64 {
 }
 
 /// Number of derivatives that are computed at once: those with respect to the positions of eight nodes.
-pub(super) const AT_ONCE: usize = 16;
+pub(super) const COORDINATES: usize = 16;
 
 /// A value and its derivatives with respect to some of the unknowns.
-pub(super) type Dual = dual::Dual<AT_ONCE>;
+pub(super) type PositionDual = dual::Dual<COORDINATES>;
 
-impl Default for Dual {
+impl Default for PositionDual {
     fn default() -> Self {
         Self::from(0.0)
     }
 }
 
-impl Number for Dual {
+impl Number for PositionDual {
     fn constant(value: f64) -> Self {
         Self::from(value)
     }

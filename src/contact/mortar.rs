@@ -27,7 +27,7 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::averages::{Averages, Extent, Pieces};
-use super::dual::{AT_ONCE, Dual, DualVector, Number};
+use super::dual::{COORDINATES, DualVector, Number, PositionDual};
 pub use super::hats::Hats;
 use super::hats::{Part, centre, gauss_around, parts};
 use super::kinematics::{Kinematics, Lever, Meeting, past_rigid};
@@ -210,7 +210,7 @@ impl Facing<'_> {
             }
         }
         let (unknowns, mut gap) = (if k.varied { 2 * nodes.len() } else { 1 }, 0.0);
-        for first in (0..unknowns).step_by(AT_ONCE) {
+        for first in (0..unknowns).step_by(COORDINATES) {
             room.frame.place(x, first);
             let place = self.mean_place(point, old, room)?;
             if first == 0 {
@@ -383,7 +383,7 @@ const NODE_AT: [f64; 3] = [-1.0, 1.0, 0.0];
 #[derive(Clone, Debug, Default)]
 pub struct Room {
     values: Averaging<f64>,
-    duals: Averaging<Dual>,
+    duals: Averaging<PositionDual>,
     /// Kinematics of a Gauss point against a rigid body, and the variations of the mean normal
     around: Kinematics,
     turns: [Vec<f64>; 2],
