@@ -97,9 +97,9 @@ pub struct WetElement {
     pub size: f64,
 }
 
-/// Most nodes and corners of an element.
+/// Most nodes of an element.
 pub const MOST_NODES: usize = 9;
-/// See [`MOST_NODES`].
+/// Most corners of an element.
 pub const MOST_CORNERS: usize = 4;
 /// Most quadrature points of an element.
 pub const MOST_POINTS: usize = 9;

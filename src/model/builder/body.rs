@@ -116,6 +116,7 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
                 .or(fluid.filter(|fluid| fluid.flows()).map(PoreFluid::coefficient)),
             plate: mesh.section.is_plate() && law.description().sections != Sections::Plate,
         };
+        // A law that nothing but its water makes remember answers as a dry one, and the pressure is added to it (`equations/wet_elements.rs`).
         let own = law.description();
         let is_alone = !surroundings.stressed && surroundings.expansion.is_none() && !surroundings.plate;
         let is_elastic = is_alone && own.variables.is_empty() && own.is_symmetric;
