@@ -19,6 +19,7 @@ use crate::equations::solids::{LinearizedSolids, SolidForces, Solids};
 use crate::equations::sums::{Sums, TrialFailure};
 use crate::equations::term::{self, Term};
 use crate::equations::trial::Trial;
+use crate::equations::wet_elements::Beginning;
 use crate::equations::{bars, contacts, damping, links, loads, pore_flow, supports};
 use crate::linear::system::{Request, System};
 use crate::linear::{SparseMatrix, norm};
@@ -37,6 +38,8 @@ pub struct Assembler {
     solids: Solids,
     linearization: Linearization,
     evolving: Evolving,
+    /// What water begins the increment with
+    beginning: Beginning,
     mass: Option<SparseMatrix>,
     /// η M of the bodies' damping, and the η of each body
     damping_mass: Option<ByMass>,
@@ -92,6 +95,7 @@ impl Assembler {
             evolving: Evolving::new(model, solids.constant(), |_| true, &activated),
             activated,
             solids,
+            beginning: Beginning::default(),
             linearization: Linearization::None,
             mass: None,
             damping_mass: None,
@@ -124,6 +128,7 @@ impl Assembler {
         self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body), Some(step));
         (self.mass, self.damping_mass) = (None, None);
         self.evaluation.memory.clear();
+        self.beginning = Beginning::default();
         (self.absent, self.activated) = (step.absent.clone(), activated);
         self.bars_absent.clone_from(&step.bars.absent);
     }
@@ -402,6 +407,7 @@ impl Assembler {
             solids,
             linearization,
             evolving,
+            beginning,
             damping_mass,
             magnitudes,
             evaluation,
@@ -445,7 +451,7 @@ impl Assembler {
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
                 Term::PoreFlow => {
-                    let pressed = pore_flow::add(model, activated, trial, u, water, memory, &mut sums)?;
+                    let pressed = pore_flow::add(model, activated, trial, u, beginning, water, memory, &mut sums)?;
                     *strain_energy += pressed.stored;
                     *heating += pressed.work;
                 }

@@ -18,7 +18,7 @@ use super::channels;
 use super::sums::{Dependence, Sums, TrialFailure};
 use super::trial::Trial;
 use super::water_balances::{Balances, Times};
-use super::wet_elements::{Increment, Pressed};
+use super::wet_elements::{Beginning, Increment, Pressed};
 use crate::model::state::{Outflow, Water};
 use crate::model::{Activated, Model};
 
@@ -39,6 +39,7 @@ pub(super) fn add(
     activated: &Activated,
     trial: Trial,
     u: &[f64],
+    beginning: &mut Beginning,
     water: &mut Water,
     memory: &mut Vec<f64>,
     sums: &mut Sums,
@@ -50,7 +51,7 @@ pub(super) fn add(
     let (times, old) = (Times::of(trial), &trial.old.water);
     let mut balances = Balances::new(flow);
     let increment = Increment { model, activated, flow, trial, times, u };
-    let pressed = increment.add_elements(memory, &mut balances, sums)?;
+    let pressed = increment.add_elements(beginning, memory, &mut balances, sums)?;
     for (k, before) in old.change.iter().enumerate() {
         balances.let_out(k, -times.memory * before, (times.memory * before).abs());
     }

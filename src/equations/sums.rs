@@ -1,7 +1,6 @@
 //! Common parts of the terms of the equations: destination of their contributions, dependence of their tangents, and failures
 //! of their evaluation.
 
-use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::coupling::Layout;
@@ -9,7 +8,7 @@ use crate::laws::bulk::MaterialFailure;
 use crate::laws::friction::LawFailure;
 use crate::linear::{BlockPosition, SparseMatrix};
 use crate::model::Model;
-use crate::model::pore_flow::{MOST_CORNERS, MOST_NODES, WetElement};
+use crate::model::pore_flow::{MOST_CORNERS, MOST_NODES, OfNodes, WetElement};
 use crate::model::scheme::time_text;
 use crate::model::text::{number, vector};
 
@@ -75,20 +74,36 @@ impl Sums<'_> {
     ) {
         let Some(tangent) = &mut self.tangent else { return };
         let (nodes, in_mesh) = (wet.nodes.len(), wet.in_mesh);
-        let blocks: Vec<&[BlockPosition]> = self.layout.blocks_of_water(number).chunks_exact(nodes + in_mesh).collect();
-        let mut add =
-            |block: &BlockPosition, i: usize, j: usize, value: f64| tangent.values[block.value(i, j)] -= value;
-        for (b, &place) in wet.places.iter().enumerate() {
-            let (own, transposed) = blocks[place / 2 - in_mesh].split_at(nodes);
-            let (j, scale) = (place % 2, scales[b]);
-            for ((column, row), opens) in own.iter().zip(transposed).zip(&opens[b]) {
-                add(column, 0, j, scale * opens.x);
-                add(column, 1, j, scale * opens.y);
-                add(row, j, 0, scale * opens.x);
-                add(row, j, 1, scale * opens.y);
+        let mut corners = [[None; 2]; MOST_CORNERS];
+        wet.places.iter().enumerate().for_each(|(a, place)| corners[place / 2 - in_mesh][place % 2] = Some(a));
+        let of_nodes = self.layout.blocks_of_water(number).chunks_exact(nodes + in_mesh);
+        for (blocks, own) in of_nodes.zip(&corners) {
+            let (column, row) = blocks.split_at(nodes);
+            let (solid, water) = column.split_at(in_mesh);
+            let opens =
+                own.map(|a| a.map_or(OfNodes::default(), |a| opens[a].map(|part| part.map(|part| -scales[a] * part))));
+            let [[first_x, first_y], [second_x, second_y]] = opens;
+            for (k, (block, transposed)) in solid.iter().zip(row).enumerate() {
+                tangent.add_block(*block, [[first_x[k], first_y[k]], [second_x[k], second_y[k]]]);
+                tangent.add_block(*transposed, [[first_x[k], second_x[k]], [first_y[k], second_y[k]]]);
             }
-            for (a, &place) in wet.places.iter().enumerate() {
-                add(&own[place / 2], place % 2, j, scales[a] * scale * takes[a][b]);
+            for (block, others) in water.iter().zip(&corners) {
+                let between = |a: Option<usize>, b: Option<usize>| match (a, b) {
+                    (Some(a), Some(b)) => -scales[a] * scales[b] * takes[a][b],
+                    _ => 0.0,
+                };
+                tangent.add_block(*block, own.map(|b| others.map(|a| between(a, b))));
+            }
+        }
+    }
+
+    /// Adds what the forces of the water in an element change by with the displacements, ∂f/∂u_x by column.
+    pub fn stiffen_pressed(&mut self, wet: &WetElement, stiffness: &[OfNodes; MOST_NODES]) {
+        let Some(tangent) = &mut self.tangent else { return };
+        let columns = self.layout.blocks_of(wet.element).chunks_exact(wet.in_mesh);
+        for (b, (blocks, [of_x, of_y])) in columns.zip(stiffness).enumerate() {
+            for (a, block) in blocks.iter().enumerate() {
+                tangent.add_block(*block, [[of_x[a], of_y[a]], [stiffness[a][1][b], 0.0]]);
             }
         }
     }
@@ -98,7 +113,7 @@ impl Sums<'_> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PressureTangent {
     /// ∂Δm/∂u = ∫ b N ∂J/∂u dV of all nodes [L²]
-    pub opens: [[Vector2<f64>; MOST_NODES]; MOST_CORNERS],
+    pub opens: [OfNodes; MOST_CORNERS],
     /// ∂Δm/∂p + Δt/β ∫ ∇N·∂v/∂∇p ∇N dV [L⁵/F]
     pub takes: [[f64; MOST_CORNERS]; MOST_CORNERS],
 }

@@ -11,14 +11,14 @@ use super::trial::Trial;
 use super::water_balances::{Balances, Times};
 use crate::laws::bulk::{MaterialFailure, cofactor};
 use crate::model::imposed::filling;
-use crate::model::pore_flow::{ConstantFlow, MOST_CORNERS, MOST_NODES, MOST_POINTS, PoreFlow, WetElement, WetPoint};
+use crate::model::pore_flow::{Flows, MOST_CORNERS, MOST_NODES, MOST_POINTS, OfNodes, PoreFlow, WetElement, WetPoint};
 use crate::model::{Activated, Model};
 
 /// Number of elements whose contributions are stored at once before they are added.
-const BATCH: usize = 256;
+const BATCH: usize = 128;
 
 /// Number of elements that one thread evaluates at a time.
-const MANY: usize = 64;
+const MANY: usize = 32;
 
 /// Water in an increment.
 pub(super) struct Increment<'a> {
@@ -32,8 +32,25 @@ pub(super) struct Increment<'a> {
     pub u: &'a [f64],
 }
 
-/// Energies of bodies on which the pressure acts here, in an increment [F·L].
+/// What the elements begin an increment with, which every evaluation in it needs.
 #[derive(Default)]
+pub(super) struct Beginning {
+    /// displacement then; nothing is known without it [L]
+    displacement: Vec<f64>,
+    elements: Vec<Begun>,
+}
+
+/// What an element that is there begins an increment with.
+#[derive(Clone, Copy, Default)]
+struct Begun {
+    /// by (3) [L⁵/(F T)], [L³/T]
+    flows: Flows,
+    /// ∫ b (J_n − 1) N dV where that is not linear [L³]
+    opened: [f64; MOST_CORNERS],
+}
+
+/// Energies of bodies on which the pressure acts here, in an increment [F·L].
+#[derive(Clone, Copy, Default)]
 pub(super) struct Pressed {
     /// −∫ b p (J − 1) dV at its end
     pub stored: f64,
@@ -42,39 +59,32 @@ pub(super) struct Pressed {
 }
 
 /// What an element adds, by corner: Δm, ∫ v·∇N dV, the magnitudes of their parts, and what they change by with the displacements and pressures.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Answer {
     change: [f64; MOST_CORNERS],
     flow: [f64; MOST_CORNERS],
     size: [f64; MOST_CORNERS],
     by: PressureTangent,
     /// (5) [F]
-    force: [[f64; 2]; MOST_NODES],
-    /// ∂f/∂u of (5) where it is wanted, column by column [F/L]
-    stiffness: [f64; 4 * MOST_NODES * MOST_NODES],
+    force: OfNodes,
+    /// −∫ b p (J − 1) dV, and work of the change of the pressure [F·L]
+    energies: Pressed,
+    /// ∂f/∂u_x of (5) where it is wanted, by column: that by u_y is the transposed of another, or none [F/L]
+    stiffness: [OfNodes; MOST_NODES],
     /// p and b (J − 1) at every point [F/L²], [-]
     pores: [[f64; 2]; MOST_POINTS],
 }
 
-impl Default for Answer {
-    fn default() -> Self {
-        Self {
-            change: [0.0; MOST_CORNERS],
-            flow: [0.0; MOST_CORNERS],
-            size: [0.0; MOST_CORNERS],
-            by: PressureTangent::default(),
-            force: Default::default(),
-            stiffness: [0.0; 4 * MOST_NODES * MOST_NODES],
-            pores: Default::default(),
-        }
-    }
-}
-
 impl Answer {
-    /// Clears everything but the stiffness, which is written whole.
-    fn clear(&mut self) {
-        [&mut self.change, &mut self.flow, &mut self.size].into_iter().for_each(|values| values.fill(0.0));
-        (self.by, self.force) = Default::default();
+    /// Adds what the pores have opened by at a point, b (J − 1), and what that changes by.
+    #[inline(always)]
+    fn open(&mut self, wet: &WetElement, point: &WetPoint, opened: f64, by: &OfNodes) {
+        for (a, value) in point.values[..wet.pressures.len()].iter().enumerate() {
+            let share = point.volume * value;
+            self.change[a] += share * opened;
+            let opens = self.by.opens[a].as_flattened_mut().iter_mut();
+            opens.zip(by.as_flattened()).for_each(|(opens, by)| *opens += share * wet.biot * by);
+        }
     }
 }
 
@@ -92,11 +102,12 @@ fn jacobian(wet: &WetElement, (f, hoop): &(Matrix2<f64>, f64)) -> Result<f64, Ma
 
 /// ∂J/∂u of every node of a deformed element at a point.
 #[inline(always)]
-fn opens_by(wet: &WetElement, point: &WetPoint, (f, hoop): &(Matrix2<f64>, f64)) -> [Vector2<f64>; MOST_NODES] {
-    let mut by = [Vector2::zeros(); MOST_NODES];
+fn opens_by(wet: &WetElement, point: &WetPoint, (f, hoop): &(Matrix2<f64>, f64)) -> OfNodes {
     let (area, plane) = if wet.is_linear { (Matrix2::identity(), 1.0) } else { (cofactor(f) * *hoop, f.determinant()) };
-    by.iter_mut().zip(&point.gradients).for_each(|(by, gradient)| *by = area * gradient);
-    by.iter_mut().zip(&point.hoop).for_each(|(by, around)| by.x += plane * around);
+    let mut by = point.gradients_by(&area);
+    if wet.is_ring {
+        by[0].iter_mut().zip(&point.hoop).for_each(|(by, around)| *by += plane * around);
+    }
     by
 }
 
@@ -113,12 +124,12 @@ pub fn trapped(wet: &WetElement, u: &[f64]) -> Result<DMatrix<f64>, MaterialFail
         jacobian(wet, &deformed)?;
         let by = opens_by(wet, point, &deformed);
         for (a, value) in point.values[..corners].iter().enumerate() {
-            for (node, by) in by[..nodes].iter().enumerate() {
-                (0..2).for_each(|i| opens[(a, 2 * node + i)] += wet.biot * point.volume * value * by[i]);
+            for (node, i) in (0..nodes).flat_map(|node| [(node, 0), (node, 1)]) {
+                opens[(a, 2 * node + i)] += wet.biot * point.volume * value * by[i][node];
             }
         }
     }
-    let takes = (&wet.storage + &wet.projection).cholesky();
+    let takes = DMatrix::from_fn(corners, corners, |a, b| wet.takes[a][b]).cholesky();
     Ok(takes.map_or_else(|| DMatrix::zeros(2 * nodes, 2 * nodes), |takes| opens.transpose() * takes.solve(&opens)))
 }
 
@@ -134,21 +145,16 @@ fn conducts(wet: &WetElement, (f, hoop): &(Matrix2<f64>, f64)) -> [Matrix2<f64>;
     [area * mobility * inverse, area * mobility]
 }
 
-/// Pressures of the corners of an element.
-#[derive(Default)]
-struct Corners {
-    now: [f64; MOST_CORNERS],
-    before: [f64; MOST_CORNERS],
-}
-
 impl Increment<'_> {
     /// Adds what the elements that are there take up and let flow, and the forces (5); stores what elastic bodies remember of their water in `memory`.
     pub fn add_elements(
         &self,
+        beginning: &mut Beginning,
         memory: &mut [f64],
         balances: &mut Balances,
         sums: &mut Sums,
     ) -> Result<Pressed, TrialFailure> {
+        self.begin(beginning)?;
         let Self { model, activated, flow, trial, times, .. } = self;
         let wanted = sums.tangent.is_some();
         let there = |(_, wet): &(usize, &WetElement)| trial.step.has(model.body_of_element[wet.element]);
@@ -156,9 +162,9 @@ impl Increment<'_> {
         let mut pressed = Pressed::default();
         let mut answers = vec![Answer::default(); BATCH.min(elements.len())];
         for batch in elements.chunks(BATCH) {
-            let evaluate = |(answer, (_, given)): (&mut Answer, &(usize, &WetElement))| {
-                let wet = activated.wet(given);
-                let found = Arch::new().dispatch(Evaluation { increment: self, wet, wanted, answer });
+            let evaluate = |(answer, (number, given)): (&mut Answer, &(usize, &WetElement))| {
+                let (wet, begun) = (activated.wet(given), &beginning.elements[*number]);
+                let found = Arch::new().dispatch(Evaluation { increment: self, wet, begun, wanted, answer });
                 found.map_err(|cause| TrialFailure::material(model, wet.element, cause))
             };
             let found = answers.par_iter_mut().zip(batch).with_min_len(MANY).map(evaluate);
@@ -171,12 +177,16 @@ impl Increment<'_> {
                 }
                 let scales = std::array::from_fn(|a| wet.pressures.get(a).map_or(0.0, |&k| flow.scales[k]));
                 sums.couple_pressures(number, wet, &scales, &answer.by);
-                if wet.presses {
-                    self.press(wet, answer, memory, &mut pressed);
-                    sums.push(&wet.nodes[..wet.in_mesh], answer.force.as_flattened());
-                    if wanted && !wet.is_linear {
-                        let dofs = 2 * wet.in_mesh;
-                        sums.couple_element(wet.element, wet.in_mesh, &answer.stiffness[..dofs * dofs]);
+                if let Some((slot, count)) = wet.variables.filter(|_| wet.presses) {
+                    let points = model.memories.of_mut(wet.element, memory).chunks_exact_mut(count);
+                    points.zip(&answer.pores).for_each(|(own, pores)| *slot.of_mut(own) = *pores);
+                    pressed.stored += answer.energies.stored;
+                    pressed.work += answer.energies.work;
+                    for (k, node) in wet.nodes[..wet.in_mesh].iter().enumerate() {
+                        (0..2).for_each(|i| sums.add(2 * node + i, answer.force[i][k]));
+                    }
+                    if !wet.is_linear {
+                        sums.stiffen_pressed(wet, &answer.stiffness);
                     }
                 }
             }
@@ -184,106 +194,125 @@ impl Increment<'_> {
         Ok(pressed)
     }
 
-    /// Writes the pressure and what the pores have opened by to the variables of an element's material, and counts their energies.
-    fn press(&self, wet: &WetElement, answer: &Answer, memory: &mut [f64], pressed: &mut Pressed) {
-        let Self { model, activated, trial, .. } = self;
-        let (e, Some((slot, count))) = (wet.element, wet.variables) else { return };
-        let (old, new) = (model.memories.of(e, &trial.old.memory), model.memories.of_mut(e, memory));
-        let solid = model.as_activated(activated, e);
-        let points = new.chunks_exact_mut(count).zip(&answer.pores).zip(solid.point_volumes());
-        for ((own, pores), volume) in points {
-            *slot.of_mut(own) = *pores;
-            pressed.stored -= volume * pores[0] * pores[1];
+    /// Finds what the elements that are there begin with, unless that is known.
+    fn begin(&self, beginning: &mut Beginning) -> Result<(), TrialFailure> {
+        let Self { model, activated, flow, trial, .. } = self;
+        let old = &trial.old.displacement;
+        if beginning.displacement == *old {
+            return Ok(());
         }
-        pressed.work += filling(slot, count, solid.point_volumes(), [old, new]);
+        beginning.displacement.clear();
+        let begun = |given: &WetElement| {
+            let there = trial.step.has(model.body_of_element[given.element]);
+            let found = if there { self.begun(activated.wet(given)) } else { Ok(Begun::default()) };
+            found.map_err(|cause| TrialFailure::material(model, given.element, cause))
+        };
+        let found = flow.elements.par_iter().with_min_len(MANY).map(begun).collect::<Vec<_>>();
+        beginning.elements = found.into_iter().collect::<Result<_, _>>()?;
+        beginning.displacement.clone_from(old);
+        Ok(())
+    }
+
+    /// What an element begins with.
+    fn begun(&self, wet: &WetElement) -> Result<Begun, MaterialFailure> {
+        if let Some(constant) = &wet.constant {
+            return Ok(Begun { flows: constant.flows, ..Begun::default() });
+        }
+        let old = &self.trial.old.displacement;
+        let (mut begun, pressures, moved) = (Begun::default(), self.pressures(wet, old), wet.moved(old));
+        for point in &wet.points {
+            let was = wet.deformed(point, &moved);
+            let jacobian = jacobian(wet, &was)?;
+            let share_of_k = point.volume * wet.permeability(jacobian, point.pressure(&pressures));
+            let [conducts, falls] = conducts(wet, &was).map(|part| part * share_of_k);
+            let falls = falls * Vector2::new(0.0, wet.weight);
+            for (a, slope) in point.slopes[..wet.pressures.len()].iter().enumerate() {
+                begun.opened[a] += wet.biot * point.volume * point.values[a] * (jacobian - 1.0);
+                begun.flows.falls[a] += slope.dot(&falls);
+                let along = conducts.tr_mul(slope);
+                let flows = begun.flows.conducts[a].iter_mut();
+                flows.zip(&point.slopes).for_each(|(flows, slope)| *flows += along.dot(slope));
+            }
+        }
+        Ok(begun)
+    }
+
+    /// Pressures of an element's corners at a displacement.
+    fn pressures(&self, wet: &WetElement, u: &[f64]) -> [f64; MOST_CORNERS] {
+        std::array::from_fn(|a| wet.pressures.get(a).map_or(0.0, |&k| self.flow.pressure(k, Some(u))))
     }
 
     /// Computes what an element adds, and the stiffness by (5) if it is wanted.
     #[inline(always)]
-    fn evaluate(&self, wet: &WetElement, wanted: bool, answer: &mut Answer) -> Result<(), MaterialFailure> {
-        let Self { flow, trial, u, times, .. } = self;
+    fn evaluate(
+        &self,
+        wet: &WetElement,
+        begun: &Begun,
+        wanted: bool,
+        answer: &mut Answer,
+    ) -> Result<(), MaterialFailure> {
+        let Self { trial, u, times, .. } = self;
         let (old, corners) = (&trial.old.displacement, wet.pressures.len());
-        let mut at = Corners::default();
-        for (a, &k) in wet.pressures.iter().enumerate() {
-            (at.now[a], at.before[a]) = (flow.pressure(k, Some(u)), flow.pressure(k, Some(old)));
-        }
-        answer.clear();
-        let mut flows = Flows::default();
-        let moved = [wet.moved(u), wet.moved(old)];
-        match &wet.constant {
-            Some(constant) => {
-                flows.add_constant(constant, answer);
-                for (k, point) in wet.points.iter().enumerate() {
-                    let opened = jacobian(wet, &wet.deformed(point, &moved[0]))? - 1.0;
-                    answer.pores[k] = [point.pressure(&at.now), wet.biot * opened];
-                }
+        let [now, before] = [*u, &old[..]].map(|u| self.pressures(wet, u));
+        let [moved, moved_before] = [*u, &old[..]].map(|u| wet.moved(u));
+        *answer = Answer::default();
+        for (k, point) in wet.points.iter().enumerate() {
+            let deformed = wet.deformed(point, &moved);
+            let opened = wet.biot * (jacobian(wet, &deformed)? - 1.0);
+            answer.pores[k] = [point.pressure(&now), opened];
+            if wet.constant.is_none() {
+                answer.open(wet, point, opened, &opens_by(wet, point, &deformed));
             }
-            None => {
-                (0..wet.points.len()).try_for_each(|k| self.add_point(wet, k, &moved, &at, answer, &mut flows))?;
+            if wanted && wet.presses && !wet.is_linear {
+                stiffen(wet, point, &deformed, answer.pores[k][0], &mut answer.stiffness);
             }
         }
-        let [now, before] = moved;
+        answer.energies = self.energies(wet, &answer.pores);
+        if let Some(constant) = &wet.constant {
+            answer.by.opens = constant.opens;
+        }
         for a in 0..corners {
-            for (force, opens) in answer.force.iter_mut().zip(&answer.by.opens[a]) {
-                force[0] -= at.now[a] * opens.x;
-                force[1] -= at.now[a] * opens.y;
-            }
-            for ((now, before), opens) in now.iter().zip(&before).zip(&answer.by.opens[a]).take(wet.in_mesh) {
-                let part = opens.component_mul(&(now - before));
-                answer.size[a] += part.x.abs() + part.y.abs();
+            let opens = answer.by.opens[a].as_flattened();
+            answer.force.as_flattened_mut().iter_mut().zip(opens).for_each(|(force, opens)| *force -= now[a] * opens);
+            answer.change[a] -= begun.opened[a];
+            for ((now, before), opens) in moved.as_flattened().iter().zip(moved_before.as_flattened()).zip(opens) {
+                let part = opens * (now - before);
+                answer.size[a] += part.abs();
                 if wet.constant.is_some() {
-                    answer.change[a] += part.x + part.y;
+                    answer.change[a] += part;
                 }
             }
-            answer.flow[a] += flows.falls[a];
-            answer.size[a] += times.span * flows.falls[a].abs();
+            let Flows { conducts, falls } = &begun.flows;
+            answer.flow[a] += falls[a];
+            answer.size[a] += times.span * falls[a].abs();
             for b in 0..corners {
-                let stores = wet.storage[(a, b)] + wet.projection[(a, b)];
-                let (taken, out) = (stores * (at.now[b] - at.before[b]), flows.conducts[a][b] * at.now[b]);
+                let stores = wet.takes[a][b];
+                let (taken, out) = (stores * (now[b] - before[b]), conducts[a][b] * now[b]);
                 answer.change[a] += taken;
                 answer.flow[a] += out;
                 answer.size[a] += taken.abs() + times.span * out.abs();
-                answer.by.takes[a][b] = stores + times.span * flows.conducts[a][b];
+                answer.by.takes[a][b] = stores + times.span * conducts[a][b];
             }
-        }
-        if wanted && wet.presses && !wet.is_linear {
-            stiffen(wet, &now, &answer.pores, &mut answer.stiffness);
         }
         Ok(())
     }
 
-    /// Adds what opens and flows at a point.
+    /// Energies of the water in an element of which it presses on the body, by p and b (J − 1) at its points.
     #[inline(always)]
-    fn add_point(
-        &self,
-        wet: &WetElement,
-        k: usize,
-        moved: &[[Vector2<f64>; MOST_NODES]; 2],
-        at: &Corners,
-        answer: &mut Answer,
-        flows: &mut Flows,
-    ) -> Result<(), MaterialFailure> {
-        let point = &wet.points[k];
-        let [is, was] = moved.each_ref().map(|moved| wet.deformed(point, moved));
-        let [jacobian_is, jacobian_was] = [jacobian(wet, &is)?, jacobian(wet, &was)?];
-        let by = opens_by(wet, point, &is);
-        answer.pores[k] = [point.pressure(&at.now), wet.biot * (jacobian_is - 1.0)];
-        let share_of_k = point.volume * wet.permeability(jacobian_was, point.pressure(&at.before));
-        let [conducts, falls] = conducts(wet, &was).map(|part| part * share_of_k);
-        let falls = falls * Vector2::new(0.0, wet.weight);
-        for a in 0..wet.pressures.len() {
-            let share = wet.biot * point.volume * point.values[a];
-            answer.change[a] += share * (jacobian_is - jacobian_was);
-            answer.by.opens[a].iter_mut().zip(&by).for_each(|(opens, by)| *opens += share * by);
-            flows.falls[a] += point.slopes[a].dot(&falls);
-            let along = conducts.tr_mul(&point.slopes[a]);
-            flows.conducts[a].iter_mut().zip(&point.slopes).for_each(|(flows, slope)| *flows += along.dot(slope));
+    fn energies(&self, wet: &WetElement, pores: &[[f64; 2]; MOST_POINTS]) -> Pressed {
+        let mut energies = Pressed::default();
+        let Some((slot, count)) = wet.variables.filter(|_| wet.presses) else { return energies };
+        let old = self.model.memories.of(wet.element, &self.trial.old.memory).chunks_exact(count);
+        for ((point, [pressure, opens]), old) in wet.points.iter().zip(pores).zip(old) {
+            let [before, opened] = slot.of(old);
+            energies.stored -= point.volume * pressure * opens;
+            energies.work += filling(point.volume, [*before, *pressure], [*opened, *opens]);
         }
-        Ok(())
+        energies
     }
 }
 
-/// Writes ∂f/∂u of (5), column by column.
+/// Adds ∂f/∂u_x of (5) at a point of a deformed element.
 ///
 /// ```text
 /// J = h det F:  ∂²J = h ∂² det F + ∂ det F ∂h + ∂h ∂ det F,   ∂² det F/∂u_ax ∂u_by = N_a,x N_b,y − N_a,y N_b,x,   h by u_x alone
@@ -291,37 +320,25 @@ impl Increment<'_> {
 #[inline(always)]
 fn stiffen(
     wet: &WetElement,
-    moved: &[Vector2<f64>; MOST_NODES],
-    pores: &[[f64; 2]; MOST_POINTS],
-    stiffness: &mut [f64],
+    point: &WetPoint,
+    (f, hoop): &(Matrix2<f64>, f64),
+    pressure: f64,
+    stiffness: &mut [OfNodes; MOST_NODES],
 ) {
-    let (nodes, dofs) = (wet.in_mesh, 2 * wet.in_mesh);
-    stiffness[..dofs * dofs].fill(0.0);
-    let mut turns = [[0.0; MOST_NODES]; MOST_NODES];
-    for (point, [pressure, _]) in wet.points.iter().zip(pores) {
-        let (f, hoop) = wet.deformed(point, moved);
-        let share = wet.biot * pressure * point.volume;
-        for (b, of_b) in point.gradients[..nodes].iter().enumerate() {
-            turns[b]
-                .iter_mut()
-                .zip(&point.gradients)
-                .for_each(|(turns, of_a)| *turns += share * hoop * of_a.perp(of_b));
-        }
-        if wet.is_ring {
-            let area = cofactor(&f);
-            let plane = point.gradients.map(|gradient| area * gradient);
-            for (b, a) in (0..nodes).flat_map(|b| (0..nodes).map(move |a| (b, a))) {
-                let (around_a, around_b) = (point.hoop[a], point.hoop[b]);
-                stiffness[2 * b * dofs + 2 * a] -= share * (plane[a].x * around_b + around_a * plane[b].x);
-                stiffness[(2 * b + 1) * dofs + 2 * a] -= share * around_a * plane[b].y;
-                stiffness[2 * b * dofs + 2 * a + 1] -= share * plane[a].y * around_b;
-            }
-        }
+    let share = wet.biot * pressure * point.volume;
+    let [x, y] = &point.gradients;
+    for (b, [_, of_y]) in stiffness.iter_mut().enumerate() {
+        let (own_x, own_y) = (share * hoop * x[b], share * hoop * y[b]);
+        (0..MOST_NODES).for_each(|a| of_y[a] += x[a] * own_y - y[a] * own_x);
     }
-    for (b, turns) in turns[..nodes].iter().enumerate() {
-        for (a, turns) in turns[..nodes].iter().enumerate() {
-            stiffness[(2 * b + 1) * dofs + 2 * a] -= turns;
-            stiffness[2 * b * dofs + 2 * a + 1] += turns;
+    if wet.is_ring {
+        let plane = point.gradients_by(&cofactor(f));
+        for (b, [of_x, of_y]) in stiffness.iter_mut().enumerate() {
+            for a in 0..MOST_NODES {
+                let (around_a, around_b) = (point.hoop[a], point.hoop[b]);
+                of_x[a] -= share * (plane[0][a] * around_b + around_a * plane[0][b]);
+                of_y[a] -= share * plane[1][a] * around_b;
+            }
         }
     }
 }
@@ -330,6 +347,7 @@ fn stiffen(
 struct Evaluation<'a> {
     increment: &'a Increment<'a>,
     wet: &'a WetElement,
+    begun: &'a Begun,
     wanted: bool,
     answer: &'a mut Answer,
 }
@@ -339,25 +357,6 @@ impl NullaryFnOnce for Evaluation<'_> {
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        self.increment.evaluate(self.wet, self.wanted, self.answer)
-    }
-}
-
-/// Flow through an element: ∫ ∇N·∂v/∂∇p ∇N dV and ∫ ∇N·v dV of water at rest that weighs [L⁵/(F T)], [L³/T].
-#[derive(Default)]
-struct Flows {
-    conducts: [[f64; MOST_CORNERS]; MOST_CORNERS],
-    falls: [f64; MOST_CORNERS],
-}
-
-impl Flows {
-    /// Adds what flows in an element in which nothing changes; what opens there goes to the answer.
-    fn add_constant(&mut self, ConstantFlow { opens, conducts, falls }: &ConstantFlow, answer: &mut Answer) {
-        for (a, falls) in falls.iter().enumerate() {
-            self.falls[a] = *falls;
-            self.conducts[a].iter_mut().zip(conducts.row(a).iter()).for_each(|(own, conducts)| *own = *conducts);
-            let nodes = answer.by.opens[a].iter_mut().enumerate().take(opens.ncols() / 2);
-            nodes.for_each(|(node, own)| *own = Vector2::new(opens[(a, 2 * node)], opens[(a, 2 * node + 1)]));
-        }
+        self.increment.evaluate(self.wet, self.begun, self.wanted, self.answer)
     }
 }

@@ -200,6 +200,14 @@ impl SparseMatrix {
         self.values[block.value(row % 2, column % 2)] += value;
     }
 
+    /// Adds to the two columns of a block.
+    pub fn add_block(&mut self, block: BlockPosition, columns: [[f64; 2]; 2]) {
+        for (j, column) in columns.into_iter().enumerate() {
+            let own = &mut self.values[block.value(0, j)..][..2];
+            own.iter_mut().zip(column).for_each(|(own, value)| *own += value);
+        }
+    }
+
     /// Adds another matrix on the same pattern, each column multiplied by its factor.
     pub fn add_columns(&mut self, other: &SparseMatrix, factors: &[f64]) {
         let mut k = 0;

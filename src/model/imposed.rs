@@ -324,7 +324,12 @@ impl Model {
     pub fn filling(&self, solid: &SolidElement, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
         let law = self.body_of(element).material.description();
         let (count, Some(slot)) = (law.variables.len(), law.slot(&GIVEN_PRESSURE)) else { return 0.0 };
-        filling(slot, count, solid.point_volumes(), [old, new])
+        let points = old.chunks_exact(count).zip(new.chunks_exact(count)).zip(solid.point_volumes());
+        let of = |((old, new), volume): ((&[f64], &[f64]), &f64)| {
+            let ([before, opened], [after, opens]) = (*slot.of(old), *slot.of(new));
+            filling(*volume, [before, after], [opened, opens])
+        };
+        points.map(of).sum()
     }
 
     /// Number of variables of an element's material at a point, those of the given pressure, and this; `None` without one.
@@ -381,12 +386,8 @@ fn linear(Moment { time, beyond }: Moment, value: impl Fn(f64) -> f64) -> f64 {
     first + (time - from) / (to - from) * (last - first)
 }
 
-/// Work of a change of the pressure in pores, as in [`Model::filling`], by the place of the pressure among so many variables.
+/// Work of a change of the pressure in pores at a point of a volume, as in [`Model::filling`]: p, and what the pores have opened by, before and after.
 #[doc(hidden)]
-pub fn filling(slot: Slot<2>, count: usize, volumes: &[f64], [old, new]: [&[f64]; 2]) -> f64 {
-    let of = |(volume, (old, new)): (&f64, (&[f64], &[f64]))| {
-        let ([before, opened], [after, opens]) = (slot.of(old), slot.of(new));
-        -0.5 * (opened + opens) * (after - before) * volume
-    };
-    volumes.iter().zip(old.chunks_exact(count).zip(new.chunks_exact(count))).map(of).sum()
+pub fn filling(volume: f64, [before, after]: [f64; 2], [opened, opens]: [f64; 2]) -> f64 {
+    -0.5 * (opened + opens) * (after - before) * volume
 }

@@ -69,10 +69,10 @@ pub struct WetElement {
     pub constant: Option<ConstantFlow>,
     /// place of the given pressure, and of what the pores have opened by, among the internal variables of the material, and their number
     pub variables: Option<(Slot<2>, usize)>,
-    /// ∫ N_a N_b dV/Q: what the pores take up by the pressure [L⁵/F]
-    pub storage: DMatrix<f64>,
-    /// ∫ (N_a − ΠN_a)(N_b − ΠN_b) dV/(2G) of linear elements, Π being the mean: without it pressures of neighbours alternate [L⁵/F]
-    pub projection: DMatrix<f64>,
+    /// 1/Q: what the pores take up by the pressure [L²/F]
+    pub capacity: f64,
+    /// ∫ N_a N_b dV/Q, and ∫ (N_a − ΠN_a)(N_b − ΠN_b) dV/(2G) of linear elements, Π being the mean: without it pressures of neighbours alternate [L⁵/F]
+    pub takes: [[f64; MOST_CORNERS]; MOST_CORNERS],
     /// ∫ N_a dV [L³]
     pub volumes: Vec<f64>,
     /// k/γ_w along x and y [L⁴/(F T)]
@@ -104,16 +104,27 @@ pub const MOST_CORNERS: usize = 4;
 /// Most quadrature points of an element.
 pub const MOST_POINTS: usize = 9;
 
+/// Vectors of the nodes of an element: x of all of them, then y, as loops over nodes are vectors of the processor.
+pub type OfNodes = [[f64; MOST_NODES]; 2];
+
 /// What opens and flows in an element of a linear body, whose permeability does not change.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct ConstantFlow {
-    /// ∫ b N_a ∂J/∂u dV, by corner and dof of a node of the mesh [L²]
-    pub opens: DMatrix<f64>,
-    /// ∫ ∇N_a·k/γ_w ∇N_b dV [L⁵/(F T)]
-    pub conducts: DMatrix<f64>,
-    /// ∫ ∇N_a·k g dV of water that weighs [L³/T]
-    pub falls: Vec<f64>,
+    /// ∫ b N_a ∂J/∂u dV of every node, by corner [L²]
+    pub opens: [OfNodes; MOST_CORNERS],
+    /// flow through it
+    pub flows: Flows,
+}
+
+/// Flow through an element.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[doc(hidden)]
+pub struct Flows {
+    /// ∫ ∇N_a·∂v/∂∇p ∇N_b dV [L⁵/(F T)]
+    pub conducts: [[f64; MOST_CORNERS]; MOST_CORNERS],
+    /// ∫ ∇N_a·v dV of water at rest that weighs [L³/T]
+    pub falls: [f64; MOST_CORNERS],
 }
 
 /// A quadrature point of an element that water flows through. What there is for corners and nodes that the element does not have is zero.
@@ -125,7 +136,7 @@ pub struct WetPoint {
     /// ∂N/∂X of the corners [1/L]
     pub slopes: [Vector2<f64>; MOST_CORNERS],
     /// ∂N/∂X of all nodes [1/L]
-    pub gradients: [Vector2<f64>; MOST_NODES],
+    pub gradients: OfNodes,
     /// N/R of all nodes of a ring; zero in plane [1/L]
     pub hoop: [f64; MOST_NODES],
     /// reference volume [L³]
@@ -136,6 +147,13 @@ impl WetPoint {
     /// p there, of the pressures of the corners [F/L²].
     pub fn pressure(&self, corners: &[f64; MOST_CORNERS]) -> f64 {
         self.values.iter().zip(corners).map(|(n, p)| n * p).sum()
+    }
+
+    /// A ∂N/∂X of all nodes.
+    #[inline(always)]
+    pub fn gradients_by(&self, matrix: &Matrix2<f64>) -> OfNodes {
+        let [x, y] = &self.gradients;
+        [0, 1].map(|i| std::array::from_fn(|node| matrix[(i, 0)] * x[node] + matrix[(i, 1)] * y[node]))
     }
 }
 
@@ -398,7 +416,7 @@ impl WetElement {
         let points = quadrature.iter().zip(solid.geometry()).map(|(point, (gradients, hoop, volume))| WetPoint {
             values: filled(linear.values(point.at)),
             slopes: filled(slopes(point.at).0),
-            gradients: filled(gradients.iter().copied()),
+            gradients: [0, 1].map(|i| filled(gradients.iter().map(|gradient| gradient[i]))),
             hoop: filled(hoop.iter().copied()),
             volume,
         });
@@ -412,7 +430,12 @@ impl WetElement {
         let spread = &mass - &volumes * volumes.transpose() / volume;
         let is_equal = kind.nodes() == corners;
         let biot = fluid.coefficient();
-        let storage = storage(fluid, &law);
+        let capacity = capacity(fluid, &law);
+        let projected = if is_equal { 0.5 / law.shear_modulus } else { 0.0 };
+        let mut takes = [[0.0; MOST_CORNERS]; MOST_CORNERS];
+        for (a, b) in (0..corners).flat_map(|a| (0..corners).map(move |b| (a, b))) {
+            takes[a][b] = capacity * mass[(a, b)] + projected * spread[(a, b)];
+        }
         let (along_x, weight) = (fluid.permeability?, fluid.unit_weight?);
         let mobility = [along_x, fluid.permeability_y.unwrap_or(along_x)].map(|k| k / weight);
         let wet = Self {
@@ -425,8 +448,8 @@ impl WetElement {
             points: points.collect(),
             constant: None,
             variables: law.slot(&GIVEN_PRESSURE).map(|slot| (slot, law.variables.len())),
-            storage: mass * storage,
-            projection: if is_equal { spread / (2.0 * law.shear_modulus) } else { DMatrix::zeros(corners, corners) },
+            capacity,
+            takes,
             volumes: volumes.iter().copied().collect(),
             mobility,
             weight: if fluid.weighs { weight } else { 0.0 },
@@ -445,21 +468,20 @@ impl WetElement {
 
     /// What opens and flows in the undeformed element.
     fn constant(&self) -> ConstantFlow {
-        let (corners, nodes) = (self.pressures.len(), self.in_mesh);
-        let [mut opens, mut conducts] = [2 * nodes, corners].map(|columns| DMatrix::zeros(corners, columns));
-        let (mut falls, [kx, ky]) = (vec![0.0; corners], self.mobility);
-        for (point, a) in self.points.iter().flat_map(|point| (0..corners).map(move |a| (point, a))) {
+        let (mut flows, [kx, ky]) = (Flows::default(), self.mobility);
+        let mut opens = [OfNodes::default(); MOST_CORNERS];
+        for (point, a) in self.points.iter().flat_map(|point| (0..self.pressures.len()).map(move |a| (point, a))) {
             let (own, share) = (point.slopes[a], self.biot * point.volume * point.values[a]);
-            for (node, gradient) in point.gradients[..nodes].iter().enumerate() {
-                opens[(a, 2 * node)] += share * (gradient.x + point.hoop[node]);
-                opens[(a, 2 * node + 1)] += share * gradient.y;
+            for node in 0..MOST_NODES {
+                opens[a][0][node] += share * (point.gradients[0][node] + point.hoop[node]);
+                opens[a][1][node] += share * point.gradients[1][node];
             }
-            for (b, slope) in point.slopes[..corners].iter().enumerate() {
-                conducts[(a, b)] += point.volume * (kx * own.x * slope.x + ky * own.y * slope.y);
+            for (conducts, slope) in flows.conducts[a].iter_mut().zip(&point.slopes) {
+                *conducts += point.volume * (kx * own.x * slope.x + ky * own.y * slope.y);
             }
-            falls[a] += point.volume * ky * own.y * self.weight;
+            flows.falls[a] += point.volume * ky * own.y * self.weight;
         }
-        ConstantFlow { opens, conducts, falls }
+        ConstantFlow { opens, flows }
     }
 }
 
@@ -471,7 +493,7 @@ fn filled<T: Copy + Default, const N: usize>(values: impl IntoIterator<Item = T>
 }
 
 /// 1/Q = n/K_w + (b − n)/K_s,  K_s = K/(1 − b) [L²/F].
-fn storage(fluid: &PoreFluid, law: &MaterialDescription) -> f64 {
+fn capacity(fluid: &PoreFluid, law: &MaterialDescription) -> f64 {
     let bulk = law.p_wave_modulus - 4.0 / 3.0 * law.shear_modulus;
     1.0 / fluid.modulus() + (fluid.coefficient() - fluid.porosity) * (1.0 - fluid.coefficient()) / bulk
 }
@@ -481,7 +503,7 @@ impl Body {
     /// Stiffness against a wave of compression, in which water that flows has no time to: λ + 2G + b² Q [F/L²].
     pub fn wave_modulus(&self) -> f64 {
         let law = self.material.description();
-        law.p_wave_modulus + self.flowing().map_or(0.0, |fluid| fluid.coefficient().powi(2) / storage(fluid, &law))
+        law.p_wave_modulus + self.flowing().map_or(0.0, |fluid| fluid.coefficient().powi(2) / capacity(fluid, &law))
     }
 }
 
@@ -491,20 +513,30 @@ const LEAST: f64 = 1e-4;
 #[doc(hidden)]
 impl WetElement {
     /// Displacements of its nodes since it came [L].
-    pub fn moved(&self, u: &[f64]) -> [Vector2<f64>; MOST_NODES] {
-        let mut moved = [Vector2::zeros(); MOST_NODES];
-        moved.iter_mut().zip(&self.nodes[..self.in_mesh]).for_each(|(moved, &node)| *moved = vector(u, node));
-        moved.iter_mut().zip(&self.activation).for_each(|(moved, activation)| *moved -= activation);
+    pub fn moved(&self, u: &[f64]) -> OfNodes {
+        let mut moved = OfNodes::default();
+        for (k, &node) in self.nodes[..self.in_mesh].iter().enumerate() {
+            let since = vector(u, node) - self.activation.get(k).copied().unwrap_or_default();
+            (moved[0][k], moved[1][k]) = (since.x, since.y);
+        }
         moved
     }
 
     /// F in the plane, and the stretch out of it, at a point.
     #[inline(always)]
-    pub fn deformed(&self, point: &WetPoint, moved: &[Vector2<f64>; MOST_NODES]) -> (Matrix2<f64>, f64) {
-        let (mut f, mut hoop) = (Matrix2::identity(), 1.0);
-        moved.iter().zip(&point.gradients).for_each(|(moved, gradient)| f += moved * gradient.transpose());
-        moved.iter().zip(&point.hoop).for_each(|(moved, share)| hoop += share * moved.x);
-        (f, hoop)
+    pub fn deformed(&self, point: &WetPoint, [x, y]: &OfNodes) -> (Matrix2<f64>, f64) {
+        // By columns, in one vector of the processor.
+        let (mut f, mut hoop) = ([1.0, 0.0, 0.0, 1.0], 1.0);
+        let [along_x, along_y] = &point.gradients;
+        for node in 0..MOST_NODES {
+            let (moved, slopes) =
+                ([x[node], y[node], x[node], y[node]], [along_x[node], along_x[node], along_y[node], along_y[node]]);
+            (0..4).for_each(|i| f[i] += moved[i] * slopes[i]);
+        }
+        if self.is_ring {
+            x.iter().zip(&point.hoop).for_each(|(x, share)| hoop += share * x);
+        }
+        (Matrix2::from_column_slice(&f), hoop)
     }
 
     /// Writes the pressure at every point to the variables of the material there.

@@ -61,7 +61,7 @@ impl Model {
     /// Notes the mean pressure of each body that is there in excess of that at the start, and the largest so far.
     pub fn note_water(&self, state: &mut State) {
         for (k, &body) in self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate()) {
-            if let Some(excess) = self.excess_pressure(body, state).filter(|_| state.has(body)) {
+            if let Some([_, excess]) = self.stored_water(body, state).filter(|_| state.has(body)) {
                 let Water { peaks, excess: now, .. } = &mut state.water;
                 peaks[k] = if excess.abs() > peaks[k].abs() { excess } else { peaks[k] };
                 now[k] = excess;
@@ -80,7 +80,7 @@ impl Model {
     /// The same, but for what it brought.
     pub(super) fn stored_water(&self, body: usize, state: &State) -> Option<[f64; 2]> {
         let flow = self.flow.as_ref().filter(|flow| flow.bodies.contains(&body))?;
-        let mut taken = 0.0;
+        let [mut taken, mut excess, mut volume] = [0.0; 3];
         for wet in self.bodies[body].elements.iter().filter_map(|&e| flow.wet(e)) {
             let wet = self.wet(state, wet);
             let (slot, count) = wet.variables?;
@@ -88,25 +88,13 @@ impl Model {
             for (point, own) in wet.points.iter().zip(memory.chunks_exact(count)) {
                 taken += point.volume * slot.of(own)[1];
             }
-            for (a, &k) in wet.pressures.iter().enumerate() {
-                let rise = flow.pressure(k, Some(&state.displacement)) - flow.initial[k];
-                taken += rise * wet.storage.column(a).sum();
-            }
-        }
-        Some([taken, self.excess_pressure(body, state)?])
-    }
-
-    /// Mean pressure of a body in excess of that at the start [F/L²].
-    fn excess_pressure(&self, body: usize, state: &State) -> Option<f64> {
-        let flow = self.flow.as_ref()?;
-        let [mut excess, mut volume] = [0.0; 2];
-        for wet in self.bodies[body].elements.iter().filter_map(|&e| flow.wet(e)) {
-            let wet = self.wet(state, wet);
             for (&k, own) in wet.pressures.iter().zip(&wet.volumes) {
-                excess += (flow.pressure(k, Some(&state.displacement)) - flow.initial[k]) * own;
+                let rise = own * (flow.pressure(k, Some(&state.displacement)) - flow.initial[k]);
+                taken += wet.capacity * rise;
+                excess += rise;
                 volume += own;
             }
         }
-        Some(excess / volume)
+        Some([taken, excess / volume])
     }
 }

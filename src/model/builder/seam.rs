@@ -99,11 +99,11 @@ pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &M
 fn rises(edge: &Edge, wet: &WetElement, model: &Model) -> f64 {
     let ends = [0, 1].map(|k| model.mesh.nodes[edge.nodes[k]]);
     let area = 0.5 * (ends[1] - ends[0]).norm() * model.mesh.section.weight(0.5 * (ends[0] + ends[1]));
-    let (lumped, takes) = (wet.storage.column_sum(), &wet.storage + &wet.projection);
+    let lumped: Vec<f64> = wet.volumes.iter().map(|volume| wet.capacity * volume).collect();
     let corners = lumped.len();
-    let scaled = DMatrix::from_fn(corners, corners, |a, b| takes[(a, b)] / (lumped[a] * lumped[b]).sqrt());
+    let scaled = DMatrix::from_fn(corners, corners, |a, b| wet.takes[a][b] / (lumped[a] * lumped[b]).sqrt());
     let least = scaled.symmetric_eigenvalues().min();
-    let at_ends = model.mesh.elements[wet.element].nodes[..corners].iter().zip(lumped.iter());
+    let at_ends = model.mesh.elements[wet.element].nodes[..corners].iter().zip(&lumped);
     let at_ends = at_ends.filter(|(node, _)| edge.nodes[..2].contains(node));
     at_ends.map(|(_, lumped)| area / (least * lumped)).fold(0.0, f64::max)
 }
