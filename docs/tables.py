@@ -40,7 +40,7 @@ NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 PUBLISHED = "cargo test --release --test published -- --ignored --nocapture "
 CYCLES = """cargo run --release --example dipping_fault -- 60 1 100 800e3 320 out/bp3 && cargo run --release -- run out/bp3/bp3.json &&
     python3 docs/figures/surface.py out/bp3 docs/figures/bp3_surface.svg"""
-FRONTS = "cargo test --release --test published -- --nocapture fronts_run"
+FRONTS = PUBLISHED + "fronts_on_fine"
 LABORATORY = """cargo run --release -- run cases/laboratory/fault_4m.json &&
     python3 docs/figures/laboratory.py out/fault_4m docs/figures/laboratory.svg"""
 # Of the quick tier: the function that makes it.

@@ -1,6 +1,6 @@
 """Speed of fronts against the equation of motion of a crack's tip.
 
-    mkdir -p out && cargo test --release --test published -- --nocapture fronts_run > out/front_speed.txt
+    mkdir -p out && cargo test --release --test published -- --ignored --nocapture fronts_on_fine > out/front_speed.txt
     python3 docs/figures/front_speed.py out/front_speed.txt docs/figures/front_speed.svg
 
 Draws the tables that the test prints: l/l_c, speed over c_R, and that of the equation. Needs numpy and matplotlib.

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 use crate::common::Blocks;
 
 /// Increments of a run that are compared.
-const INCREMENTS: usize = 4;
+const INCREMENTS: usize = 2;
 
 /// Cases larger than this are not run.
 const DOFS_TO_RUN: usize = 2500;

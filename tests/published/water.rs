@@ -196,18 +196,28 @@ fn of_the_crack(run: &Finished, x: f64) -> [f64; 2] {
 /// The self-similar crack by water that flows along the contact: no expression of the pressure, and a first increment with its jump.
 #[test]
 fn a_crack_grows_with_the_water_that_flows_along_it() {
-    for (ratio, lambda, middle, within) in [(0.5, 0.791607, 0.468661, 0.005), (0.9, 0.139813, 0.100051, 0.005)] {
-        let a = lambda * 0.8f64.sqrt();
-        let run = flowing(ratio, a, 0.0);
-        let slip = |x: f64| of_the_crack(&run, x * a)[0] / a;
-        let [near, nearer] = [0.875, 0.90625].map(|x| (x, slip(x).powf(2.0 / 3.0)));
-        let tip = near.0 + near.1 * (nearer.0 - near.0) / (near.1 - nearer.1);
-        println!("T = {ratio}: {}, tip at {tip} a", slip(0.0));
-        close("slip at the middle", slip(0.0) / middle, 1.0, within);
-        close("tip", tip, 1.0, within);
-        let water = &run.last().conduits[0];
-        assert!(water.mass_error.abs() < 1e-10 * water.amounts.throughput, "{:e}", water.mass_error);
-    }
+    self_similar(0.5, 0.791607, 0.468661);
+}
+
+/// The same with T = 0.9, which the water outruns.
+#[test]
+#[ignore = "seconds: docs/validation/water.md"]
+fn the_water_outruns_a_crack() {
+    self_similar(0.9, 0.139813, 0.100051);
+}
+
+/// The crack of a stress ratio T: its λ, its slip at the middle, and its tip.
+fn self_similar(ratio: f64, lambda: f64, middle: f64) {
+    let a = lambda * 0.8f64.sqrt();
+    let run = flowing(ratio, a, 0.0);
+    let slip = |x: f64| of_the_crack(&run, x * a)[0] / a;
+    let [near, nearer] = [0.875, 0.90625].map(|x| (x, slip(x).powf(2.0 / 3.0)));
+    let tip = near.0 + near.1 * (nearer.0 - near.0) / (near.1 - nearer.1);
+    println!("T = {ratio}: {}, tip at {tip} a", slip(0.0));
+    close("slip at the middle", slip(0.0) / middle, 1.0, 0.005);
+    close("tip", tip, 1.0, 0.005);
+    let water = &run.last().conduits[0];
+    assert!(water.mass_error.abs() < 1e-10 * water.amounts.throughput, "{:e}", water.mass_error);
 }
 
 /// The same with T = 0.1 that the elements do not resolve as well.
