@@ -102,11 +102,12 @@ fn jacobian(wet: &WetElement, (f, hoop): &(Matrix2<f64>, f64)) -> Result<f64, Ma
 
 /// ∂J/∂u of every node of a deformed element at a point.
 #[inline(always)]
-fn opens_by(wet: &WetElement, point: &WetPoint, (f, hoop): &(Matrix2<f64>, f64)) -> OfNodes {
-    let (area, plane) = if wet.is_linear { (Matrix2::identity(), 1.0) } else { (cofactor(f) * *hoop, f.determinant()) };
-    let mut by = point.gradients_by(&area);
-    if wet.is_ring {
-        by[0].iter_mut().zip(&point.hoop).for_each(|(by, around)| *by += plane * around);
+fn opens_by(wet: &WetElement, k: usize, (f, stretch): &(Matrix2<f64>, f64)) -> OfNodes {
+    let linear = (Matrix2::identity(), 1.0);
+    let (area, plane) = if wet.is_linear { linear } else { (cofactor(f) * *stretch, f.determinant()) };
+    let mut by = wet.points[k].gradients_by(&area);
+    if let Some(hoop) = wet.hoop.get(k) {
+        by[0].iter_mut().zip(hoop).for_each(|(by, around)| *by += plane * around);
     }
     by
 }
@@ -119,10 +120,10 @@ fn opens_by(wet: &WetElement, point: &WetPoint, (f, hoop): &(Matrix2<f64>, f64))
 pub fn trapped(wet: &WetElement, u: &[f64]) -> Result<DMatrix<f64>, MaterialFailure> {
     let (corners, nodes) = (wet.pressures.len(), wet.in_mesh);
     let mut opens = DMatrix::zeros(corners, 2 * nodes);
-    for point in &wet.points {
-        let deformed = wet.deformed(point, &wet.moved(u));
+    for (k, point) in wet.points.iter().enumerate() {
+        let deformed = wet.deformed(k, &wet.moved(u));
         jacobian(wet, &deformed)?;
-        let by = opens_by(wet, point, &deformed);
+        let by = opens_by(wet, k, &deformed);
         for (a, value) in point.values[..corners].iter().enumerate() {
             for (node, i) in (0..nodes).flat_map(|node| [(node, 0), (node, 1)]) {
                 opens[(a, 2 * node + i)] += wet.biot * point.volume * value * by[i][node];
@@ -165,11 +166,10 @@ impl Increment<'_> {
             let evaluate = |(answer, (number, given)): (&mut Answer, &(usize, &WetElement))| {
                 let (wet, begun) = (activated.wet(given), &beginning.elements[*number]);
                 let found = Arch::new().dispatch(Evaluation { increment: self, wet, begun, wanted, answer });
-                found.map_err(|cause| TrialFailure::material(model, wet.element, cause))
+                found.err().map(|cause| TrialFailure::material(model, wet.element, cause))
             };
-            let found = answers.par_iter_mut().zip(batch).with_min_len(MANY).map(evaluate);
-            // The first failure by number, whatever the threads do
-            found.collect::<Vec<_>>().into_iter().collect::<Result<(), _>>()?;
+            let failed = answers.par_iter_mut().zip(batch).with_min_len(MANY).find_map_first(evaluate);
+            failed.map_or(Ok(()), Err)?;
             for (answer, &(number, wet)) in answers.iter().zip(batch) {
                 for (a, &k) in wet.pressures.iter().enumerate() {
                     balances.take(k, answer.change[a], answer.size[a]);
@@ -202,39 +202,42 @@ impl Increment<'_> {
             return Ok(());
         }
         beginning.displacement.clear();
-        let begun = |given: &WetElement| {
+        beginning.elements.clear();
+        beginning.elements.resize(flow.elements.len(), Begun::default());
+        let begin = |(begun, given): (&mut Begun, &WetElement)| {
             let there = trial.step.has(model.body_of_element[given.element]);
-            let found = if there { self.begun(activated.wet(given)) } else { Ok(Begun::default()) };
-            found.map_err(|cause| TrialFailure::material(model, given.element, cause))
+            let found = if there { self.begun(activated.wet(given), begun) } else { Ok(()) };
+            found.err().map(|cause| TrialFailure::material(model, given.element, cause))
         };
-        let found = flow.elements.par_iter().with_min_len(MANY).map(begun).collect::<Vec<_>>();
-        beginning.elements = found.into_iter().collect::<Result<_, _>>()?;
+        let all = beginning.elements.par_iter_mut().zip(&flow.elements);
+        all.with_min_len(MANY).find_map_first(begin).map_or(Ok(()), Err)?;
         beginning.displacement.clone_from(old);
         Ok(())
     }
 
-    /// What an element begins with.
-    fn begun(&self, wet: &WetElement) -> Result<Begun, MaterialFailure> {
+    /// Finds what an element begins with.
+    fn begun(&self, wet: &WetElement, begun: &mut Begun) -> Result<(), MaterialFailure> {
         if let Some(constant) = &wet.constant {
-            return Ok(Begun { flows: constant.flows, ..Begun::default() });
+            begun.flows = constant.flows;
+            return Ok(());
         }
         let old = &self.trial.old.displacement;
-        let (mut begun, pressures, moved) = (Begun::default(), self.pressures(wet, old), wet.moved(old));
-        for point in &wet.points {
-            let was = wet.deformed(point, &moved);
+        let (pressures, moved) = (self.pressures(wet, old), wet.moved(old));
+        for (k, (point, slopes)) in wet.points.iter().zip(&wet.slopes).enumerate() {
+            let was = wet.deformed(k, &moved);
             let jacobian = jacobian(wet, &was)?;
             let share_of_k = point.volume * wet.permeability(jacobian, point.pressure(&pressures));
             let [conducts, falls] = conducts(wet, &was).map(|part| part * share_of_k);
             let falls = falls * Vector2::new(0.0, wet.weight);
-            for (a, slope) in point.slopes[..wet.pressures.len()].iter().enumerate() {
+            for (a, slope) in slopes[..wet.pressures.len()].iter().enumerate() {
                 begun.opened[a] += wet.biot * point.volume * point.values[a] * (jacobian - 1.0);
                 begun.flows.falls[a] += slope.dot(&falls);
                 let along = conducts.tr_mul(slope);
                 let flows = begun.flows.conducts[a].iter_mut();
-                flows.zip(&point.slopes).for_each(|(flows, slope)| *flows += along.dot(slope));
+                flows.zip(slopes).for_each(|(flows, slope)| *flows += along.dot(slope));
             }
         }
-        Ok(begun)
+        Ok(())
     }
 
     /// Pressures of an element's corners at a displacement.
@@ -257,14 +260,14 @@ impl Increment<'_> {
         let [moved, moved_before] = [*u, &old[..]].map(|u| wet.moved(u));
         *answer = Answer::default();
         for (k, point) in wet.points.iter().enumerate() {
-            let deformed = wet.deformed(point, &moved);
+            let deformed = wet.deformed(k, &moved);
             let opened = wet.biot * (jacobian(wet, &deformed)? - 1.0);
             answer.pores[k] = [point.pressure(&now), opened];
             if wet.constant.is_none() {
-                answer.open(wet, point, opened, &opens_by(wet, point, &deformed));
+                answer.open(wet, point, opened, &opens_by(wet, k, &deformed));
             }
             if wanted && wet.presses && !wet.is_linear {
-                stiffen(wet, point, &deformed, answer.pores[k][0], &mut answer.stiffness);
+                stiffen(wet, k, &deformed, answer.pores[k][0], &mut answer.stiffness);
             }
         }
         answer.energies = self.energies(wet, &answer.pores);
@@ -320,22 +323,23 @@ impl Increment<'_> {
 #[inline(always)]
 fn stiffen(
     wet: &WetElement,
-    point: &WetPoint,
-    (f, hoop): &(Matrix2<f64>, f64),
+    k: usize,
+    (f, stretch): &(Matrix2<f64>, f64),
     pressure: f64,
     stiffness: &mut [OfNodes; MOST_NODES],
 ) {
+    let point = &wet.points[k];
     let share = wet.biot * pressure * point.volume;
     let [x, y] = &point.gradients;
     for (b, [_, of_y]) in stiffness.iter_mut().enumerate() {
-        let (own_x, own_y) = (share * hoop * x[b], share * hoop * y[b]);
+        let (own_x, own_y) = (share * stretch * x[b], share * stretch * y[b]);
         (0..MOST_NODES).for_each(|a| of_y[a] += x[a] * own_y - y[a] * own_x);
     }
-    if wet.is_ring {
+    if let Some(hoop) = wet.hoop.get(k) {
         let plane = point.gradients_by(&cofactor(f));
         for (b, [of_x, of_y]) in stiffness.iter_mut().enumerate() {
             for a in 0..MOST_NODES {
-                let (around_a, around_b) = (point.hoop[a], point.hoop[b]);
+                let (around_a, around_b) = (hoop[a], hoop[b]);
                 of_x[a] -= share * (plane[0][a] * around_b + around_a * plane[0][b]);
                 of_y[a] -= share * plane[1][a] * around_b;
             }

@@ -65,6 +65,10 @@ pub struct WetElement {
     pub activation: Vec<Vector2<f64>>,
     /// quadrature points
     pub points: Vec<WetPoint>,
+    /// ∂N/∂X of the corners at every point [1/L]
+    pub slopes: Vec<[Vector2<f64>; MOST_CORNERS]>,
+    /// N/R of all nodes at every point of a ring [1/L]
+    pub hoop: Vec<[f64; MOST_NODES]>,
     /// what opens and flows, where that does not change
     pub constant: Option<ConstantFlow>,
     /// place of the given pressure, and of what the pores have opened by, among the internal variables of the material, and their number
@@ -87,8 +91,6 @@ pub struct WetElement {
     pub biot: f64,
     /// whether the body is linear: its water flows through the undeformed body
     pub is_linear: bool,
-    /// whether it is a ring
-    pub is_ring: bool,
     /// whether the pressure acts with the balances of the water, not in the law of the body
     pub presses: bool,
     /// c = k M/γ_w, and the size [L²/T], [L]
@@ -127,18 +129,14 @@ pub struct Flows {
     pub falls: [f64; MOST_CORNERS],
 }
 
-/// A quadrature point of an element that water flows through. What there is for corners and nodes that the element does not have is zero.
+/// A quadrature point of an element that water flows through: what every evaluation reads, and no more. What there is for corners and nodes that the element does not have is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct WetPoint {
     /// N of the corners
     pub values: [f64; MOST_CORNERS],
-    /// ∂N/∂X of the corners [1/L]
-    pub slopes: [Vector2<f64>; MOST_CORNERS],
     /// ∂N/∂X of all nodes [1/L]
     pub gradients: OfNodes,
-    /// N/R of all nodes of a ring; zero in plane [1/L]
-    pub hoop: [f64; MOST_NODES],
     /// reference volume [L³]
     pub volume: f64,
 }
@@ -413,11 +411,11 @@ impl WetElement {
             )
         };
         let quadrature = solid.quadrature();
-        let points = quadrature.iter().zip(solid.geometry()).map(|(point, (gradients, hoop, volume))| WetPoint {
+        let rounds = if mesh.section.is_axisymmetric() { quadrature.len() } else { 0 };
+        let hoop = solid.geometry().take(rounds).map(|(_, hoop, _)| filled(hoop.iter().copied())).collect();
+        let points = quadrature.iter().zip(solid.geometry()).map(|(point, (gradients, _, volume))| WetPoint {
             values: filled(linear.values(point.at)),
-            slopes: filled(slopes(point.at).0),
             gradients: [0, 1].map(|i| filled(gradients.iter().map(|gradient| gradient[i]))),
-            hoop: filled(hoop.iter().copied()),
             volume,
         });
         let mut mass = DMatrix::<f64>::zeros(corners, corners);
@@ -446,6 +444,8 @@ impl WetElement {
             places,
             activation,
             points: points.collect(),
+            slopes: quadrature.iter().map(|point| filled(slopes(point.at).0)).collect(),
+            hoop,
             constant: None,
             variables: law.slot(&GIVEN_PRESSURE).map(|slot| (slot, law.variables.len())),
             capacity,
@@ -457,7 +457,6 @@ impl WetElement {
             void_ratio: fluid.kozeny_carman.then(|| fluid.porosity / (1.0 - fluid.porosity)),
             biot,
             is_linear: law.is_linear,
-            is_ring: mesh.section.is_axisymmetric(),
             presses: body.skeleton.is_some(),
             diffusivity: mobility[0].max(mobility[1]) * law.p_wave_modulus,
             size: solid.area().sqrt(),
@@ -470,13 +469,15 @@ impl WetElement {
     fn constant(&self) -> ConstantFlow {
         let (mut flows, [kx, ky]) = (Flows::default(), self.mobility);
         let mut opens = [OfNodes::default(); MOST_CORNERS];
-        for (point, a) in self.points.iter().flat_map(|point| (0..self.pressures.len()).map(move |a| (point, a))) {
-            let (own, share) = (point.slopes[a], self.biot * point.volume * point.values[a]);
+        for (k, a) in (0..self.points.len()).flat_map(|k| (0..self.pressures.len()).map(move |a| (k, a))) {
+            let (point, slopes) = (&self.points[k], &self.slopes[k]);
+            let (own, share) = (slopes[a], self.biot * point.volume * point.values[a]);
             for node in 0..MOST_NODES {
-                opens[a][0][node] += share * (point.gradients[0][node] + point.hoop[node]);
+                let around = self.hoop.get(k).map_or(0.0, |hoop| hoop[node]);
+                opens[a][0][node] += share * (point.gradients[0][node] + around);
                 opens[a][1][node] += share * point.gradients[1][node];
             }
-            for (conducts, slope) in flows.conducts[a].iter_mut().zip(&point.slopes) {
+            for (conducts, slope) in flows.conducts[a].iter_mut().zip(slopes) {
                 *conducts += point.volume * (kx * own.x * slope.x + ky * own.y * slope.y);
             }
             flows.falls[a] += point.volume * ky * own.y * self.weight;
@@ -522,21 +523,21 @@ impl WetElement {
         moved
     }
 
-    /// F in the plane, and the stretch out of it, at a point.
+    /// F in the plane, and the stretch out of it, at a point of some number.
     #[inline(always)]
-    pub fn deformed(&self, point: &WetPoint, [x, y]: &OfNodes) -> (Matrix2<f64>, f64) {
+    pub fn deformed(&self, k: usize, [x, y]: &OfNodes) -> (Matrix2<f64>, f64) {
         // By columns, in one vector of the processor.
-        let (mut f, mut hoop) = ([1.0, 0.0, 0.0, 1.0], 1.0);
-        let [along_x, along_y] = &point.gradients;
+        let (mut f, mut stretch) = ([1.0, 0.0, 0.0, 1.0], 1.0);
+        let [along_x, along_y] = &self.points[k].gradients;
         for node in 0..MOST_NODES {
             let (moved, slopes) =
                 ([x[node], y[node], x[node], y[node]], [along_x[node], along_x[node], along_y[node], along_y[node]]);
             (0..4).for_each(|i| f[i] += moved[i] * slopes[i]);
         }
-        if self.is_ring {
-            x.iter().zip(&point.hoop).for_each(|(x, share)| hoop += share * x);
+        if let Some(hoop) = self.hoop.get(k) {
+            x.iter().zip(hoop).for_each(|(x, share)| stretch += share * x);
         }
-        (Matrix2::from_column_slice(&f), hoop)
+        (Matrix2::from_column_slice(&f), stretch)
     }
 
     /// Writes the pressure at every point to the variables of the material there.

@@ -31,14 +31,14 @@ fn moves(model: &Model, flow: &PoreFlow) -> Option<String> {
     across.filter_map(|node| flow.of_node[*node]).for_each(|k| free[k] = false);
     for wet in flow.elements.iter().filter(first) {
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, None)).collect();
-        for point in &wet.points {
+        for (point, slopes) in wet.points.iter().zip(&wet.slopes) {
             let [kx, ky] = wet.mobility;
             for (a, &k) in wet.pressures.iter().enumerate() {
-                let own = point.slopes[a];
+                let own = slopes[a];
                 let weighs = point.volume * ky * wet.weight * own.y;
                 sums[k][0] += weighs;
                 sums[k][1] += weighs.abs();
-                for (slope, pressure) in point.slopes.iter().zip(&pressures) {
+                for (slope, pressure) in slopes.iter().zip(&pressures) {
                     let part = point.volume * pressure * (kx * own.x * slope.x + ky * own.y * slope.y);
                     sums[k][0] += part;
                     sums[k][1] += part.abs();

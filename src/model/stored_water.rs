@@ -26,13 +26,14 @@ impl Model {
     pub fn balance_of_water(&self, state: &State) -> Option<[f64; 2]> {
         let flow = self.flow.as_ref()?;
         let taken = flow.bodies.iter().filter_map(|&body| self.water_of(body, state)).map(|[taken, _]| taken);
+        Some(self.balance(taken, state))
+    }
+
+    /// The same from what each body has taken up.
+    pub fn balance(&self, taken: impl IntoIterator<Item = f64>, state: &State) -> [f64; 2] {
         let left = (state.water.outlets.iter()).chain(state.water.channels.as_flattened()).map(|outlet| outlet.volume);
-        Some(
-            taken
-                .chain(left)
-                .chain([state.water.between])
-                .fold([0.0; 2], |[sum, size], volume| [sum + volume, size + volume.abs()]),
-        )
+        let all = taken.into_iter().chain(left).chain([state.water.between]);
+        all.fold([0.0; 2], |[sum, size], volume| [sum + volume, size + volume.abs()])
     }
 
     /// Mean seepage through an element, −k/γ_w (∇p − γ_w g) in the place where it is now [L/T].
@@ -41,9 +42,9 @@ impl Model {
         let wet = &*self.wet(state, wet);
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(&state.displacement))).collect();
         let (mut sum, mut volume) = (Vector2::zeros(), 0.0);
-        for point in &wet.points {
-            let mut slope: Vector2<f64> = point.slopes.iter().zip(&pressures).map(|(slope, p)| slope * *p).sum();
-            let (f, hoop) = wet.deformed(point, &wet.moved(&state.displacement));
+        for (k, (point, slopes)) in wet.points.iter().zip(&wet.slopes).enumerate() {
+            let mut slope: Vector2<f64> = slopes.iter().zip(&pressures).map(|(slope, p)| slope * *p).sum();
+            let (f, hoop) = wet.deformed(k, &wet.moved(&state.displacement));
             let mut jacobian = f.trace() - 1.0 + (hoop - 1.0);
             if !wet.is_linear {
                 slope = f.transpose().try_inverse().unwrap_or_default() * slope;

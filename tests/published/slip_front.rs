@@ -108,10 +108,9 @@ fn length_at_loss_of_stability(friction: Value, [peak, curvature]: [f64; 2]) -> 
 fn stability_is_lost_at_the_length_of_the_theory() {
     let alpha = 50.0 * STEEPEST;
     let linear = json!({"law": "slip_weakening", "mu_s": MU_S, "mu_d": MU_K, "D_c": WEAKENING, "alpha_t": alpha});
-    for (name, friction, shape) in [
-        ("slip_weakening", linear, [0.498, 0.3]),
-        ("super_subloading", super_subloading(alpha), [0.40, 0.1]),
-    ] {
+    for (name, friction, shape) in
+        [("slip_weakening", linear, [0.498, 0.3]), ("super_subloading", super_subloading(alpha), [0.40, 0.1])]
+    {
         let length = length_at_loss_of_stability(friction, shape);
         println!("{name}, {shape:?}: stability is lost at a length of {length:.3}, in theory 1");
         // The last increments before it end a little short of it.
