@@ -47,6 +47,10 @@ struct Begun {
     flows: Flows,
     /// ∫ b (J_n − 1) N dV where that is not linear [L³]
     opened: [f64; MOST_CORNERS],
+    /// displacements of its nodes since it came [L]
+    moved: OfNodes,
+    /// pressures of its corners [F/L²]
+    pressures: [f64; MOST_CORNERS],
 }
 
 /// Energies of bodies on which the pressure acts here, in an increment [F·L].
@@ -84,6 +88,37 @@ impl Answer {
             self.change[a] += share * opened;
             let opens = self.by.opens[a].as_flattened_mut().iter_mut();
             opens.zip(by.as_flattened()).for_each(|(opens, by)| *opens += share * wet.biot * by);
+        }
+    }
+
+    /// Adds the forces, and what the element takes up and lets flow, by the pressures of its corners and the displacements of its nodes.
+    #[inline(always)]
+    fn balance(&mut self, wet: &WetElement, begun: &Begun, span: f64, now: &[f64; MOST_CORNERS], moved: &OfNodes) {
+        let Flows { conducts, falls } = &begun.flows;
+        // Node by node, so that the sums of the corners do not wait for each other.
+        for (i, k) in (0..2).flat_map(|i| (0..MOST_NODES).map(move |k| (i, k))) {
+            let way = moved[i][k] - begun.moved[i][k];
+            for (a, opens) in self.by.opens.iter().enumerate() {
+                let part = opens[i][k] * way;
+                self.force[i][k] -= now[a] * opens[i][k];
+                self.size[a] += part.abs();
+                if wet.constant.is_some() {
+                    self.change[a] += part;
+                }
+            }
+        }
+        for a in 0..wet.pressures.len() {
+            self.change[a] -= begun.opened[a];
+            self.flow[a] += falls[a];
+            self.size[a] += span * falls[a].abs();
+            for (b, (now, before)) in now.iter().zip(&begun.pressures).enumerate() {
+                let stores = wet.takes[a][b];
+                let (taken, out) = (stores * (now - before), conducts[a][b] * now);
+                self.change[a] += taken;
+                self.flow[a] += out;
+                self.size[a] += taken.abs() + span * out.abs();
+                self.by.takes[a][b] = stores + span * conducts[a][b];
+            }
         }
     }
 }
@@ -217,12 +252,13 @@ impl Increment<'_> {
 
     /// Finds what an element begins with.
     fn begun(&self, wet: &WetElement, begun: &mut Begun) -> Result<(), MaterialFailure> {
+        let old = &self.trial.old.displacement;
+        let (pressures, moved) = (self.pressures(wet, old), wet.moved(old));
+        (begun.pressures, begun.moved) = (pressures, moved);
         if let Some(constant) = &wet.constant {
             begun.flows = constant.flows;
             return Ok(());
         }
-        let old = &self.trial.old.displacement;
-        let (pressures, moved) = (self.pressures(wet, old), wet.moved(old));
         for (k, (point, slopes)) in wet.points.iter().zip(&wet.slopes).enumerate() {
             let was = wet.deformed(k, &moved);
             let jacobian = jacobian(wet, &was)?;
@@ -254,10 +290,8 @@ impl Increment<'_> {
         wanted: bool,
         answer: &mut Answer,
     ) -> Result<(), MaterialFailure> {
-        let Self { trial, u, times, .. } = self;
-        let (old, corners) = (&trial.old.displacement, wet.pressures.len());
-        let [now, before] = [*u, &old[..]].map(|u| self.pressures(wet, u));
-        let [moved, moved_before] = [*u, &old[..]].map(|u| wet.moved(u));
+        let Self { u, times, .. } = self;
+        let (now, moved) = (self.pressures(wet, u), wet.moved(u));
         *answer = Answer::default();
         for (k, point) in wet.points.iter().enumerate() {
             let deformed = wet.deformed(k, &moved);
@@ -274,29 +308,7 @@ impl Increment<'_> {
         if let Some(constant) = &wet.constant {
             answer.by.opens = constant.opens;
         }
-        for a in 0..corners {
-            let opens = answer.by.opens[a].as_flattened();
-            answer.force.as_flattened_mut().iter_mut().zip(opens).for_each(|(force, opens)| *force -= now[a] * opens);
-            answer.change[a] -= begun.opened[a];
-            for ((now, before), opens) in moved.as_flattened().iter().zip(moved_before.as_flattened()).zip(opens) {
-                let part = opens * (now - before);
-                answer.size[a] += part.abs();
-                if wet.constant.is_some() {
-                    answer.change[a] += part;
-                }
-            }
-            let Flows { conducts, falls } = &begun.flows;
-            answer.flow[a] += falls[a];
-            answer.size[a] += times.span * falls[a].abs();
-            for b in 0..corners {
-                let stores = wet.takes[a][b];
-                let (taken, out) = (stores * (now[b] - before[b]), conducts[a][b] * now[b]);
-                answer.change[a] += taken;
-                answer.flow[a] += out;
-                answer.size[a] += taken.abs() + times.span * out.abs();
-                answer.by.takes[a][b] = stores + times.span * conducts[a][b];
-            }
-        }
+        answer.balance(wet, begun, times.span, &now, &moved);
         Ok(())
     }
 

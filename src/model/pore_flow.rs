@@ -526,17 +526,18 @@ impl WetElement {
     /// F in the plane, and the stretch out of it, at a point of some number.
     #[inline(always)]
     pub fn deformed(&self, k: usize, [x, y]: &OfNodes) -> (Matrix2<f64>, f64) {
-        // By columns, in one vector of the processor.
-        let (mut f, mut stretch) = ([1.0, 0.0, 0.0, 1.0], 1.0);
+        // By columns, in one vector of the processor; two sums that do not wait for each other.
+        let (mut sums, mut stretch) = ([[1.0, 0.0, 0.0, 1.0], [0.0; 4]], 1.0);
         let [along_x, along_y] = &self.points[k].gradients;
         for node in 0..MOST_NODES {
             let (moved, slopes) =
                 ([x[node], y[node], x[node], y[node]], [along_x[node], along_x[node], along_y[node], along_y[node]]);
-            (0..4).for_each(|i| f[i] += moved[i] * slopes[i]);
+            (0..4).for_each(|i| sums[node % 2][i] += moved[i] * slopes[i]);
         }
         if let Some(hoop) = self.hoop.get(k) {
             x.iter().zip(hoop).for_each(|(x, share)| stretch += share * x);
         }
+        let f: [f64; 4] = std::array::from_fn(|i| sums[0][i] + sums[1][i]);
         (Matrix2::from_column_slice(&f), stretch)
     }
 
