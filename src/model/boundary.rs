@@ -362,6 +362,8 @@ pub struct DeadLoad {
     pub amplitude: Amplitude,
     /// nodes on which it acts
     pub weights: Vec<NodalWeight>,
+    /// body of which it is the weight
+    pub body: Option<usize>,
 }
 
 impl DeadLoad {

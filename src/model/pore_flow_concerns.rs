@@ -4,7 +4,7 @@ use super::boundary::Profile;
 use super::coupled::CoupledParts;
 use super::pore_flow::{Drain, DrainKind, PoreFlow, WetElement};
 use super::scheme::Scheme;
-use super::text::number;
+use super::text::{self, number};
 use super::{Model, Step};
 use crate::mesh::ElementKind;
 
@@ -14,10 +14,36 @@ const AT_REST: f64 = 1e-4;
 /// Share of the least increment without overshoot, r h²/(6 c), below which pressures beside an outlet overshoot by a few hundredths [-]
 const OVERSHOOTS: f64 = 0.5;
 
+/// Least and most unit weight of water over that of a body, between which the two count as of the same units: a third to nearly all of ground is usual, a
+/// density in its place is a tenth as much, and a submerged body of peat weighs as little as a tenth of water [-]
+const OF_WEIGHT: [f64; 2] = [0.1, 10.0];
+
 /// Warnings about the water.
 pub(super) fn concerns(model: &Model) -> Vec<String> {
     let Some(flow) = &model.flow else { return Vec::new() };
-    moves(model, flow).into_iter().chain(overshoots(model, flow)).chain(unprescribed(model, flow)).collect()
+    let of_steps = overshoots(model, flow).into_iter().chain(unprescribed(model, flow));
+    moves(model, flow).into_iter().chain(of_other_units(model, flow)).chain(of_steps).collect()
+}
+
+/// Water whose unit weight is out of proportion to that of the body.
+fn of_other_units(model: &Model, flow: &PoreFlow) -> Option<String> {
+    let bodies = || flow.bodies.iter().map(|&number| (number, &model.bodies[number]));
+    model.steps.iter().flat_map(|step| bodies().map(move |body| (step, body))).find_map(|(step, (number, body))| {
+        let (weight, at) = (body.flowing()?.unit_weight?, model.mesh.nodes[*body.nodes.first()?]);
+        let own = step.loads.dead.iter().filter(|load| load.body == Some(number));
+        let gravity = own.map(|load| load.amplitude.value(at, step.span.end)).fold(0.0, f64::hypot);
+        let of_body = body.material.description().density * gravity;
+        let [least, most] = OF_WEIGHT.map(|share| share * of_body);
+        (of_body > 0.0 && !(least..=most).contains(&weight)).then(|| {
+            format!(
+                "the water of body `{}` weighs {} per volume (unit_weight), and the body {} (density times gravity): ground weighs one to three times as much \
+                 as water, so give both in the same units, and the permeability, of which k/unit_weight counts",
+                body.name,
+                text::number(weight),
+                text::number(of_body)
+            )
+        })
+    })
 }
 
 /// Water that is driven by its weight, and does not start at rest.

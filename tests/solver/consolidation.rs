@@ -196,6 +196,24 @@ fn a_flux_without_a_prescribed_pressure_is_reported() {
     assert!(!warned(json!([{"on": "soil_top", "flux": 0.1}, {"on": "soil_bottom", "pressure": 0}])));
 }
 
+/// Water of other units than the ground that it fills is reported: kN/m³ beside N/m³, or a density in the place of a weight; not that of half its weight.
+#[test]
+fn a_unit_weight_of_other_units_is_reported() {
+    let warned = |weight: f64, loads: Value| {
+        let mut case = column("q4", 2, json!({"initial": 0.1}));
+        case["bodies"]["soil"]["material"]["density"] = json!(2000);
+        case["bodies"]["soil"]["pore_fluid"]["unit_weight"] = json!(weight);
+        case["steps"][0]["loads"] = loads;
+        let warnings = model(&case).warnings().join("\n");
+        warnings.contains(&format!("`soil` weighs {weight} per volume (unit_weight), and the body 19620"))
+    };
+    let pulled = json!([{"on": "soil", "gravity": {"y": "-9.81"}}, {"on": "soil_top", "dead_pressure": "3e4"}]);
+    assert!(!warned(9810.0, pulled.clone()));
+    assert!(warned(9.81, pulled.clone()));
+    assert!(warned(1000.0, pulled));
+    assert!(!warned(9.81, json!([{"on": "soil_top", "dead_pressure": "3e4"}])));
+}
+
 /// What is stored and what has left add up to nothing, and the audit of energies closes.
 #[test]
 fn water_and_energy_are_in_balance() {

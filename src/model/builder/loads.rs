@@ -249,13 +249,16 @@ impl Changing<'_> {
                 uniform_weights(&model.mesh, edges)
             }
         };
+        let pulled =
+            model.bodies.iter().position(|body| kind == Kind::Gravity && *on == Place::Group(body.name.clone()));
         let mut dead = Vec::new();
         for (component, name) in ["x", "y"].into_iter().enumerate() {
             let given = components.and_then(|given| given.along(component));
             let before = self.before.dead.iter().find(|load| load.component == component);
             let before = before.map(|load| load.amplitude.clone());
             let amplitude = amplitude(given, before, &format!("{place}.{}.{name}", kind.key()), self.span)?;
-            dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, weights: weights.clone() }));
+            let load = |amplitude| DeadLoad { component, amplitude, weights: weights.clone(), body: pulled };
+            dead.extend(amplitude.map(load));
         }
         Ok(Loads { dead, ..Loads::default() })
     }
@@ -276,13 +279,19 @@ impl Changing<'_> {
             (Kind::DeadPressure, _) => {
                 let weights = pressure_weights(&model.mesh, edges()?).into_iter().enumerate();
                 let Some(amplitude) = amplitude()? else { return Ok(loads) };
-                let along = |(component, weights)| DeadLoad { component, amplitude: amplitude.clone(), weights };
+                let along =
+                    |(component, weights)| DeadLoad { component, amplitude: amplitude.clone(), weights, body: None };
                 loads.dead.extend(weights.map(along));
             }
             (_, Some(body)) => {
                 let (node, weight) = (body.turning, 1.0 / body.radius);
                 let weights = vec![NodalWeight { node, weight, position: model.mesh.nodes[node] }];
-                loads.dead.extend(amplitude()?.map(|amplitude| DeadLoad { component: 0, amplitude, weights }));
+                loads.dead.extend(amplitude()?.map(|amplitude| DeadLoad {
+                    component: 0,
+                    amplitude,
+                    weights,
+                    body: None,
+                }));
             }
             (_, None) => {
                 let plate = plate_of_moment(model, on, place)?;
