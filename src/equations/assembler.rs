@@ -126,9 +126,8 @@ impl Assembler {
         self.solids = Solids::new(model, are_there, &activated);
         self.evolving = Evolving::new(model, self.solids.constant(), are_there, &activated);
         self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body), Some(step));
-        (self.mass, self.damping_mass) = (None, None);
+        (self.mass, self.damping_mass, self.beginning) = (None, None, Beginning::default());
         self.evaluation.memory.clear();
-        self.beginning = Beginning::default();
         (self.absent, self.activated) = (step.absent.clone(), activated);
         self.bars_absent.clone_from(&step.bars.absent);
     }

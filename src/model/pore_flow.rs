@@ -39,6 +39,8 @@ pub struct PoreFlow {
     pub of_element: Vec<Option<usize>>,
     /// Bodies
     pub bodies: Vec<usize>,
+    /// of all elements in the mesh [L³]
+    pub volume: f64,
     /// Number of the pressure of each node of the slaves along which water flows, by contact
     pub channels: BTreeMap<String, BTreeMap<usize, usize>>,
     /// Names of the outlets, over all steps
@@ -248,6 +250,7 @@ impl PoreFlow {
             of_node,
             elements: Vec::new(),
             bodies: wet.clone(),
+            volume: 0.0,
             channels: BTreeMap::new(),
             outlets: Vec::new(),
             stiffness: 0.0,
@@ -259,6 +262,7 @@ impl PoreFlow {
                 let modulus = bodies[body].material.description().p_wave_modulus;
                 let depth = solids[e].mean_weight();
                 flow.stiffness = flow.stiffness.max(modulus * depth);
+                flow.volume += element.volumes.iter().sum::<f64>();
                 for &k in &element.pressures {
                     flow.scales[k] = flow.scales[k].max(modulus / element.size);
                     let at = flow.corners[k].map_or_else(Vector2::zeros, |node| mesh.nodes[node]);

@@ -75,8 +75,6 @@ pub struct Audit {
     noise: f64,
     /// Largest error of the balance of water, and largest volume that has come or gone [L³]
     water: [f64; 2],
-    /// Volume of the bodies in which water flows, once asked for [L³]
-    wet_volume: Option<f64>,
     /// Energy in the contact penalties
     pub give: Give,
     /// Parts of the model, once asked for: they take a look at every element
@@ -269,8 +267,7 @@ impl Audit {
         self.work += (new.energy.external_work - old.energy.external_work).abs();
         self.error = error;
         if let Some([error, throughput]) = model.balance_of_water(new) {
-            let sum = || model.flow.iter().flat_map(|flow| &flow.elements).flat_map(|wet| &wet.volumes).sum();
-            let bodies = *self.wet_volume.get_or_insert_with(sum);
+            let bodies = model.flow.as_ref().map_or(0.0, |flow| flow.volume);
             self.water = [self.water[0].max(error.abs()), self.water[1].max(throughput).max(SEALED * bodies)];
         }
         let stresses = self.stresses.get_or_insert_with(|| stresses(model));
