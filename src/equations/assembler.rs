@@ -93,9 +93,9 @@ impl Assembler {
             absent: Vec::new(),
             bars_absent: Vec::new(),
             evolving: Evolving::new(model, solids.constant(), |_| true, &activated),
+            beginning: Beginning::new(&activated),
             activated,
             solids,
-            beginning: Beginning::default(),
             linearization: Linearization::None,
             mass: None,
             damping_mass: None,
@@ -126,7 +126,7 @@ impl Assembler {
         self.solids = Solids::new(model, are_there, &activated);
         self.evolving = Evolving::new(model, self.solids.constant(), are_there, &activated);
         self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body), Some(step));
-        (self.mass, self.damping_mass, self.beginning) = (None, None, Beginning::default());
+        (self.mass, self.damping_mass, self.beginning) = (None, None, Beginning::new(&activated));
         self.evaluation.memory.clear();
         (self.absent, self.activated) = (step.absent.clone(), activated);
         self.bars_absent.clone_from(&step.bars.absent);
@@ -402,7 +402,6 @@ impl Assembler {
         let Self {
             model,
             layout,
-            activated,
             solids,
             linearization,
             evolving,
@@ -450,7 +449,7 @@ impl Assembler {
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
                 Term::PoreFlow => {
-                    let pressed = pore_flow::add(model, activated, trial, u, beginning, water, memory, &mut sums)?;
+                    let pressed = pore_flow::add(model, beginning, trial, u, water, memory, &mut sums)?;
                     *strain_energy += pressed.stored;
                     *heating += pressed.work;
                 }

@@ -19,8 +19,8 @@ use super::sums::{Dependence, Sums, TrialFailure};
 use super::trial::Trial;
 use super::water_balances::{Balances, Times};
 use super::wet_elements::{Beginning, Increment, Pressed};
+use crate::model::Model;
 use crate::model::state::{Outflow, Water};
-use crate::model::{Activated, Model};
 
 /// The flow goes by the state at the start of the increment, and the volume by the displacement.
 pub(super) fn dependence(model: &Model) -> Dependence {
@@ -36,10 +36,9 @@ pub(super) fn span(trial: Trial) -> f64 {
 /// water at the end of the trial, and what such bodies remember of it in `memory`.
 pub(super) fn add(
     model: &Model,
-    activated: &Activated,
+    beginning: &mut Beginning,
     trial: Trial,
     u: &[f64],
-    beginning: &mut Beginning,
     water: &mut Water,
     memory: &mut Vec<f64>,
     sums: &mut Sums,
@@ -50,7 +49,7 @@ pub(super) fn add(
     }
     let (times, old) = (Times::of(trial), &trial.old.water);
     let mut balances = Balances::new(flow);
-    let increment = Increment { model, activated, flow, trial, times, u };
+    let increment = Increment { model, flow, trial, times, u };
     let pressed = increment.add_elements(beginning, memory, &mut balances, sums)?;
     for (k, before) in old.change.iter().enumerate() {
         balances.let_out(k, -times.memory * before, (times.memory * before).abs());

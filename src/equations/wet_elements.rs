@@ -2,6 +2,8 @@
 //!
 //! The equations are those of `pore_flow.rs`.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
@@ -23,8 +25,6 @@ const MANY: usize = 32;
 /// Water in an increment.
 pub(super) struct Increment<'a> {
     pub model: &'a Model,
-    /// elements that came into a deformed model
-    pub activated: &'a Activated,
     pub flow: &'a PoreFlow,
     pub trial: Trial<'a>,
     pub times: Times,
@@ -33,11 +33,19 @@ pub(super) struct Increment<'a> {
 }
 
 /// What the elements begin an increment with, which every evaluation in it needs.
-#[derive(Default)]
 pub(super) struct Beginning {
+    /// elements that came into a deformed model
+    activated: Arc<Activated>,
     /// displacement then; nothing is known without it [L]
     displacement: Vec<f64>,
     elements: Vec<Begun>,
+}
+
+impl Beginning {
+    /// Before anything is known.
+    pub fn new(activated: &Arc<Activated>) -> Self {
+        Self { activated: activated.clone(), displacement: Vec::new(), elements: Vec::new() }
+    }
 }
 
 /// What an element that is there begins an increment with.
@@ -191,7 +199,7 @@ impl Increment<'_> {
         sums: &mut Sums,
     ) -> Result<Pressed, TrialFailure> {
         self.begin(beginning)?;
-        let Self { model, activated, flow, trial, times, .. } = self;
+        let Self { model, flow, trial, times, .. } = self;
         let wanted = sums.tangent.is_some();
         let there = |(_, wet): &(usize, &WetElement)| trial.step.has(model.body_of_element[wet.element]);
         let elements: Vec<(usize, &WetElement)> = flow.elements.iter().enumerate().filter(there).collect();
@@ -199,7 +207,7 @@ impl Increment<'_> {
         let mut answers = vec![Answer::default(); BATCH.min(elements.len())];
         for batch in elements.chunks(BATCH) {
             let evaluate = |(answer, (number, given)): (&mut Answer, &(usize, &WetElement))| {
-                let (wet, begun) = (activated.wet(given), &beginning.elements[*number]);
+                let (wet, begun) = (beginning.activated.wet(given), &beginning.elements[*number]);
                 let found = Arch::new().dispatch(Evaluation { increment: self, wet, begun, wanted, answer });
                 found.err().map(|cause| TrialFailure::material(model, wet.element, cause))
             };
@@ -231,22 +239,23 @@ impl Increment<'_> {
 
     /// Finds what the elements that are there begin with, unless that is known.
     fn begin(&self, beginning: &mut Beginning) -> Result<(), TrialFailure> {
-        let Self { model, activated, flow, trial, .. } = self;
+        let Self { model, flow, trial, .. } = self;
+        let Beginning { activated, displacement, elements } = beginning;
         let old = &trial.old.displacement;
-        if beginning.displacement == *old {
+        if displacement == old {
             return Ok(());
         }
-        beginning.displacement.clear();
-        beginning.elements.clear();
-        beginning.elements.resize(flow.elements.len(), Begun::default());
+        displacement.clear();
+        elements.clear();
+        elements.resize(flow.elements.len(), Begun::default());
         let begin = |(begun, given): (&mut Begun, &WetElement)| {
             let there = trial.step.has(model.body_of_element[given.element]);
             let found = if there { self.begun(activated.wet(given), begun) } else { Ok(()) };
             found.err().map(|cause| TrialFailure::material(model, given.element, cause))
         };
-        let all = beginning.elements.par_iter_mut().zip(&flow.elements);
+        let all = elements.par_iter_mut().zip(&flow.elements);
         all.with_min_len(MANY).find_map_first(begin).map_or(Ok(()), Err)?;
-        beginning.displacement.clone_from(old);
+        displacement.clone_from(old);
         Ok(())
     }
 
