@@ -77,6 +77,7 @@ pub(super) fn add(
     water.change = balances.end(flow, u, sums);
     water.peaks.clone_from(&old.peaks);
     water.excess.clone_from(&old.excess);
+    water.taken.clone_from(&old.taken);
     water.brought.clone_from(&old.brought);
     Ok(pressed)
 }

@@ -74,15 +74,17 @@ impl Sums<'_> {
     ) {
         let Some(tangent) = &mut self.tangent else { return };
         let (nodes, in_mesh) = (wet.nodes.len(), wet.in_mesh);
-        let mut corners = [[None; 2]; MOST_CORNERS];
+        let (mut corners, nothing) = ([[None; 2]; MOST_CORNERS], OfNodes::default());
+        let mut scaled = *opens;
+        for (scaled, scale) in scaled.iter_mut().zip(scales) {
+            scaled.as_flattened_mut().iter_mut().for_each(|part| *part *= -scale);
+        }
         wet.places.iter().enumerate().for_each(|(a, place)| corners[place / 2 - in_mesh][place % 2] = Some(a));
         let of_nodes = self.layout.blocks_of_water(number).chunks_exact(nodes + in_mesh);
         for (blocks, own) in of_nodes.zip(&corners) {
             let (column, row) = blocks.split_at(nodes);
             let (solid, water) = column.split_at(in_mesh);
-            let opens =
-                own.map(|a| a.map_or(OfNodes::default(), |a| opens[a].map(|part| part.map(|part| -scales[a] * part))));
-            let [[first_x, first_y], [second_x, second_y]] = opens;
+            let [[first_x, first_y], [second_x, second_y]] = own.map(|a| a.map_or(&nothing, |a| &scaled[a]));
             for (k, (block, transposed)) in solid.iter().zip(row).enumerate() {
                 tangent.add_block(*block, [[first_x[k], first_y[k]], [second_x[k], second_y[k]]]);
                 tangent.add_block(*transposed, [[first_x[k], second_x[k]], [first_y[k], second_y[k]]]);

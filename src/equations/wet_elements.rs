@@ -13,13 +13,12 @@ use super::trial::Trial;
 use super::water_balances::{Balances, Times};
 use crate::laws::bulk::{MaterialFailure, cofactor};
 use crate::model::imposed::filling;
-use crate::model::pore_flow::{Flows, MOST_CORNERS, MOST_NODES, MOST_POINTS, OfNodes, PoreFlow, WetElement, WetPoint};
+use crate::model::pore_flow::{
+    Flows, MOST_CORNERS, MOST_NODES, MOST_POINTS, OfCorners, OfNodes, PoreFlow, WetElement, WetPoint,
+};
 use crate::model::{Activated, Model};
 
-/// Number of elements whose contributions are stored at once before they are added.
-const BATCH: usize = 128;
-
-/// Number of elements that one thread evaluates at a time.
+/// Number of elements that one thread evaluates at a time: what they answer is to stay at hand until it is added.
 const MANY: usize = 32;
 
 /// Water in an increment.
@@ -88,6 +87,17 @@ struct Answer {
 }
 
 impl Answer {
+    /// Zeros, but for what points have, which is written, and the stiffness where it is not wanted.
+    #[inline(always)]
+    fn clear(&mut self, stiffens: bool) {
+        let Self { change, flow, size, by, force, energies, stiffness, .. } = self;
+        [change, flow, size].into_iter().for_each(|sums| *sums = [0.0; MOST_CORNERS]);
+        (*by, *force, *energies) = (PressureTangent::default(), OfNodes::default(), Pressed::default());
+        if stiffens {
+            *stiffness = [OfNodes::default(); MOST_NODES];
+        }
+    }
+
     /// Adds what the pores have opened by at a point, b (J − 1), and what that changes by.
     #[inline(always)]
     fn open(&mut self, wet: &WetElement, point: &WetPoint, opened: f64, by: &OfNodes) {
@@ -199,16 +209,32 @@ impl Increment<'_> {
         sums: &mut Sums,
     ) -> Result<Pressed, TrialFailure> {
         self.begin(beginning)?;
-        let Self { model, flow, trial, times, .. } = self;
-        let wanted = sums.tangent.is_some();
+        let Self { model, flow, trial, u, .. } = self;
         let there = |(_, wet): &(usize, &WetElement)| trial.step.has(model.body_of_element[wet.element]);
         let elements: Vec<(usize, &WetElement)> = flow.elements.iter().enumerate().filter(there).collect();
+        let pressures: Vec<f64> = (0..flow.count()).map(|k| flow.pressure(k, Some(u))).collect();
+        // Threads are called once for all batches.
+        rayon::scope(|_| self.add_batches(beginning, &elements, &pressures, memory, balances, sums))
+    }
+
+    /// The same for some elements, by their numbers, and the pressures at the displacement.
+    fn add_batches(
+        &self,
+        beginning: &Beginning,
+        elements: &[(usize, &WetElement)],
+        pressures: &[f64],
+        memory: &mut [f64],
+        balances: &mut Balances,
+        sums: &mut Sums,
+    ) -> Result<Pressed, TrialFailure> {
+        let Self { model, flow, times, .. } = self;
+        let (wanted, many) = (sums.tangent.is_some(), MANY * rayon::current_num_threads());
         let mut pressed = Pressed::default();
-        let mut answers = vec![Answer::default(); BATCH.min(elements.len())];
-        for batch in elements.chunks(BATCH) {
+        let mut answers = vec![Answer::default(); many.min(elements.len())];
+        for batch in elements.chunks(many) {
             let evaluate = |(answer, (number, given)): (&mut Answer, &(usize, &WetElement))| {
                 let (wet, begun) = (beginning.activated.wet(given), &beginning.elements[*number]);
-                let found = Arch::new().dispatch(Evaluation { increment: self, wet, begun, wanted, answer });
+                let found = Arch::new().dispatch(Evaluation { increment: self, wet, begun, pressures, wanted, answer });
                 found.err().map(|cause| TrialFailure::material(model, wet.element, cause))
             };
             let failed = answers.par_iter_mut().zip(batch).with_min_len(MANY).find_map_first(evaluate);
@@ -218,8 +244,10 @@ impl Increment<'_> {
                     balances.take(k, answer.change[a], answer.size[a]);
                     balances.let_out(k, times.span * answer.flow[a], 0.0);
                 }
-                let scales = std::array::from_fn(|a| wet.pressures.get(a).map_or(0.0, |&k| flow.scales[k]));
-                sums.couple_pressures(number, wet, &scales, &answer.by);
+                if wanted {
+                    let scales = std::array::from_fn(|a| wet.pressures.get(a).map_or(0.0, |&k| flow.scales[k]));
+                    sums.couple_pressures(number, wet, &scales, &answer.by);
+                }
                 if let Some((slot, count)) = wet.variables.filter(|_| wet.presses) {
                     let points = model.memories.of_mut(wet.element, memory).chunks_exact_mut(count);
                     points.zip(&answer.pores).for_each(|(own, pores)| *slot.of_mut(own) = *pores);
@@ -250,7 +278,8 @@ impl Increment<'_> {
         elements.resize(flow.elements.len(), Begun::default());
         let begin = |(begun, given): (&mut Begun, &WetElement)| {
             let there = trial.step.has(model.body_of_element[given.element]);
-            let found = if there { self.begun(activated.wet(given), begun) } else { Ok(()) };
+            let wet = activated.wet(given);
+            let found = if there { Arch::new().dispatch(|| self.begun(wet, begun)) } else { Ok(()) };
             found.err().map(|cause| TrialFailure::material(model, given.element, cause))
         };
         let all = elements.par_iter_mut().zip(&flow.elements);
@@ -260,9 +289,11 @@ impl Increment<'_> {
     }
 
     /// Finds what an element begins with.
+    #[inline(always)]
     fn begun(&self, wet: &WetElement, begun: &mut Begun) -> Result<(), MaterialFailure> {
         let old = &self.trial.old.displacement;
-        let (pressures, moved) = (self.pressures(wet, old), wet.moved(old));
+        let corner = |a: usize| wet.pressures.get(a).map_or(0.0, |&k| self.flow.pressure(k, Some(old)));
+        let (pressures, moved) = (std::array::from_fn(corner), wet.moved(old));
         (begun.pressures, begun.moved) = (pressures, moved);
         if let Some(constant) = &wet.constant {
             begun.flows = constant.flows;
@@ -273,21 +304,18 @@ impl Increment<'_> {
             let jacobian = jacobian(wet, &was)?;
             let share_of_k = point.volume * wet.permeability(jacobian, point.pressure(&pressures));
             let [conducts, falls] = conducts(wet, &was).map(|part| part * share_of_k);
-            let falls = falls * Vector2::new(0.0, wet.weight);
-            for (a, slope) in slopes[..wet.pressures.len()].iter().enumerate() {
+            let (falls, [x, y]) = (falls * Vector2::new(0.0, wet.weight), slopes);
+            let along: OfCorners =
+                [0, 1].map(|i| std::array::from_fn(|a| conducts[(0, i)] * x[a] + conducts[(1, i)] * y[a]));
+            for a in 0..MOST_CORNERS {
                 begun.opened[a] += wet.biot * point.volume * point.values[a] * (jacobian - 1.0);
-                begun.flows.falls[a] += slope.dot(&falls);
-                let along = conducts.tr_mul(slope);
-                let flows = begun.flows.conducts[a].iter_mut();
-                flows.zip(slopes).for_each(|(flows, slope)| *flows += along.dot(slope));
+                begun.flows.falls[a] += x[a] * falls.x + y[a] * falls.y;
+                for b in 0..MOST_CORNERS {
+                    begun.flows.conducts[a][b] += along[0][a] * x[b] + along[1][a] * y[b];
+                }
             }
         }
         Ok(())
-    }
-
-    /// Pressures of an element's corners at a displacement.
-    fn pressures(&self, wet: &WetElement, u: &[f64]) -> [f64; MOST_CORNERS] {
-        std::array::from_fn(|a| wet.pressures.get(a).map_or(0.0, |&k| self.flow.pressure(k, Some(u))))
     }
 
     /// Computes what an element adds, and the stiffness by (5) if it is wanted.
@@ -296,20 +324,20 @@ impl Increment<'_> {
         &self,
         wet: &WetElement,
         begun: &Begun,
+        now: &[f64; MOST_CORNERS],
         wanted: bool,
         answer: &mut Answer,
     ) -> Result<(), MaterialFailure> {
-        let Self { u, times, .. } = self;
-        let (now, moved) = (self.pressures(wet, u), wet.moved(u));
-        *answer = Answer::default();
+        let (moved, stiffens) = (wet.moved(self.u), wanted && wet.presses && !wet.is_linear);
+        answer.clear(stiffens);
         for (k, point) in wet.points.iter().enumerate() {
             let deformed = wet.deformed(k, &moved);
             let opened = wet.biot * (jacobian(wet, &deformed)? - 1.0);
-            answer.pores[k] = [point.pressure(&now), opened];
+            answer.pores[k] = [point.pressure(now), opened];
             if wet.constant.is_none() {
                 answer.open(wet, point, opened, &opens_by(wet, k, &deformed));
             }
-            if wanted && wet.presses && !wet.is_linear {
+            if stiffens {
                 stiffen(wet, k, &deformed, answer.pores[k][0], &mut answer.stiffness);
             }
         }
@@ -317,7 +345,7 @@ impl Increment<'_> {
         if let Some(constant) = &wet.constant {
             answer.by.opens = constant.opens;
         }
-        answer.balance(wet, begun, times.span, &now, &moved);
+        answer.balance(wet, begun, self.times.span, now, &moved);
         Ok(())
     }
 
@@ -351,10 +379,12 @@ fn stiffen(
 ) {
     let point = &wet.points[k];
     let share = wet.biot * pressure * point.volume;
-    let [x, y] = &point.gradients;
+    // A copy is not written to with the stiffness, so that its loops are vectors of the processor.
+    let [x, y] = point.gradients;
     for (b, [_, of_y]) in stiffness.iter_mut().enumerate() {
         let (own_x, own_y) = (share * stretch * x[b], share * stretch * y[b]);
-        (0..MOST_NODES).for_each(|a| of_y[a] += x[a] * own_y - y[a] * own_x);
+        let added: [f64; MOST_NODES] = std::array::from_fn(|a| x[a] * own_y - y[a] * own_x);
+        of_y.iter_mut().zip(added).for_each(|(of_y, added)| *of_y += added);
     }
     if let Some(hoop) = wet.hoop.get(k) {
         let plane = point.gradients_by(&cofactor(f));
@@ -373,6 +403,8 @@ struct Evaluation<'a> {
     increment: &'a Increment<'a>,
     wet: &'a WetElement,
     begun: &'a Begun,
+    /// of all corners in the model
+    pressures: &'a [f64],
     wanted: bool,
     answer: &'a mut Answer,
 }
@@ -382,6 +414,8 @@ impl NullaryFnOnce for Evaluation<'_> {
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        self.increment.evaluate(self.wet, self.begun, self.wanted, self.answer)
+        let Self { increment, wet, begun, pressures, wanted, answer } = self;
+        let now = std::array::from_fn(|a| wet.pressures.get(a).map_or(0.0, |&k| pressures[k]));
+        increment.evaluate(wet, begun, &now, wanted, answer)
     }
 }

@@ -7,9 +7,9 @@
 //! p = p₀ + s û        s = M/h: stiffness of the skeleton over the size of an element, so that û is a length and its equation a force
 //! ```
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use nalgebra::{Matrix2, Vector2};
 
 use super::Body;
 use super::boundary::Profile;
@@ -68,11 +68,11 @@ pub struct WetElement {
     /// quadrature points
     pub points: Vec<WetPoint>,
     /// ∂N/∂X of the corners at every point [1/L]
-    pub slopes: Vec<[Vector2<f64>; MOST_CORNERS]>,
+    pub slopes: Vec<OfCorners>,
     /// N/R of all nodes at every point of a ring [1/L]
     pub hoop: Vec<[f64; MOST_NODES]>,
     /// what opens and flows, where that does not change
-    pub constant: Option<ConstantFlow>,
+    pub constant: Option<Box<ConstantFlow>>,
     /// place of the given pressure, and of what the pores have opened by, among the internal variables of the material, and their number
     pub variables: Option<(Slot<2>, usize)>,
     /// 1/Q: what the pores take up by the pressure [L²/F]
@@ -110,6 +110,8 @@ pub const MOST_POINTS: usize = 9;
 
 /// Vectors of the nodes of an element: x of all of them, then y, as loops over nodes are vectors of the processor.
 pub type OfNodes = [[f64; MOST_NODES]; 2];
+/// Vectors of its corners, in the same order.
+pub type OfCorners = [[f64; MOST_CORNERS]; 2];
 
 /// What opens and flows in an element of a linear body, whose permeability does not change.
 #[derive(Clone, Debug, PartialEq)]
@@ -331,24 +333,25 @@ impl PoreFlow {
 
 /// Pairs of neighbouring corners of some elements, the last one alone if they are odd.
 fn paired(elements: impl Iterator<Item = usize>, mesh: &Mesh) -> Vec<[Option<usize>; 2]> {
-    let mut adjacent: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut adjacent: Vec<[usize; 2]> = Vec::new();
     for e in elements {
         let element = &mesh.elements[e];
         for edge in 0..element.kind.corners() {
             let [a, b] = element.kind.edge(edge).0.map(|local| element.nodes[local]);
-            adjacent.entry(a).or_default().push(b);
-            adjacent.entry(b).or_default().push(a);
+            adjacent.extend([[a, b], [b, a]]);
         }
     }
-    let mut taken = BTreeSet::new();
+    adjacent.sort_unstable();
+    let mut taken = vec![false; mesh.nodes.len()];
     let (mut pairs, mut alone) = (Vec::new(), Vec::new());
-    for (&node, others) in &adjacent {
-        if !taken.insert(node) {
+    for others in adjacent.chunk_by(|one, next| one[0] == next[0]) {
+        let node = others[0][0];
+        if std::mem::replace(&mut taken[node], true) {
             continue;
         }
-        match others.iter().filter(|other| !taken.contains(other)).min() {
-            Some(&other) => {
-                taken.insert(other);
+        match others.iter().map(|[_, other]| *other).find(|&other| !taken[other]) {
+            Some(other) => {
+                taken[other] = true;
                 pairs.push([Some(node), Some(other)]);
             }
             None => alone.push(node),
@@ -401,18 +404,17 @@ impl WetElement {
         let linear = if corners == 3 { crate::mesh::ElementKind::T3 } else { crate::mesh::ElementKind::Q4 };
         let mut positions = mesh.places(e);
         positions.iter_mut().zip(&activation).for_each(|(x, u)| *x += u);
+        // ∂X/∂ξ with the geometry of all nodes
+        let map = |at: [f64; 2]| -> Matrix2<f64> {
+            let nodes = positions.iter().zip(kind.derivatives(at));
+            nodes.map(|(x, d)| (x - positions[0]) * Vector2::from(d).transpose()).sum()
+        };
+        // ∂N/∂X = (∂X/∂ξ)⁻ᵀ ∂N/∂ξ
         let slopes = |at: [f64; 2]| {
-            // ∂N/∂X = (∂X/∂ξ)⁻ᵀ ∂N/∂ξ with the geometry of all nodes
-            let map: Matrix2<f64> = positions
-                .iter()
-                .zip(kind.derivatives(at))
-                .map(|(x, d)| (x - positions[0]) * Vector2::from(d).transpose())
-                .sum();
-            let inverse = map.transpose().try_inverse().unwrap_or_default();
-            (
-                linear.derivatives(at).into_iter().map(|d| inverse * Vector2::from(d)).collect::<Vec<_>>(),
-                map.determinant(),
-            )
+            let inverse = map(at).transpose().try_inverse().unwrap_or_default();
+            let slopes = linear.derivatives(at).into_iter().map(|d| inverse * Vector2::from(d));
+            let slopes: [Vector2<f64>; MOST_CORNERS] = filled(slopes);
+            [0, 1].map(|i| slopes.map(|slope| slope[i]))
         };
         let quadrature = solid.quadrature();
         let rounds = if mesh.section.is_axisymmetric() { quadrature.len() } else { 0 };
@@ -422,22 +424,24 @@ impl WetElement {
             gradients: [0, 1].map(|i| filled(gradients.iter().map(|gradient| gradient[i]))),
             volume,
         });
-        let mut mass = DMatrix::<f64>::zeros(corners, corners);
+        let mut mass = [[0.0; MOST_CORNERS]; MOST_CORNERS];
         for point in kind.mass_quadrature() {
-            let values = nalgebra::DVector::from_vec(linear.values(point.at));
+            let values: [f64; MOST_CORNERS] = filled(linear.values(point.at));
             let place = positions.iter().zip(kind.values(point.at)).map(|(x, n)| x * n).sum();
-            mass.ger(point.weight * slopes(point.at).1 * mesh.section.weight(place), &values, &values, 1.0);
+            let share = point.weight * map(point.at).determinant() * mesh.section.weight(place);
+            for (row, own) in mass.iter_mut().zip(&values) {
+                row.iter_mut().zip(&values).for_each(|(mass, value)| *mass += share * value * own);
+            }
         }
-        let (volumes, volume) = (mass.column_sum(), mass.sum());
-        let spread = &mass - &volumes * volumes.transpose() / volume;
+        let volumes = mass.map(|row| row.iter().sum::<f64>());
+        let volume: f64 = volumes.iter().sum();
         let is_equal = kind.nodes() == corners;
         let biot = fluid.coefficient();
         let capacity = capacity(fluid, &law);
         let projected = if is_equal { 0.5 / law.shear_modulus } else { 0.0 };
-        let mut takes = [[0.0; MOST_CORNERS]; MOST_CORNERS];
-        for (a, b) in (0..corners).flat_map(|a| (0..corners).map(move |b| (a, b))) {
-            takes[a][b] = capacity * mass[(a, b)] + projected * spread[(a, b)];
-        }
+        let takes = std::array::from_fn(|a| {
+            std::array::from_fn(|b| capacity * mass[a][b] + projected * (mass[a][b] - volumes[a] * volumes[b] / volume))
+        });
         let (along_x, weight) = (fluid.permeability?, fluid.unit_weight?);
         let mobility = [along_x, fluid.permeability_y.unwrap_or(along_x)].map(|k| k / weight);
         let wet = Self {
@@ -448,13 +452,13 @@ impl WetElement {
             places,
             activation,
             points: points.collect(),
-            slopes: quadrature.iter().map(|point| filled(slopes(point.at).0)).collect(),
+            slopes: quadrature.iter().map(|point| slopes(point.at)).collect(),
             hoop,
             constant: None,
             variables: law.slot(&GIVEN_PRESSURE).map(|slot| (slot, law.variables.len())),
             capacity,
             takes,
-            volumes: volumes.iter().copied().collect(),
+            volumes: volumes[..corners].to_vec(),
             mobility,
             weight: if fluid.weighs { weight } else { 0.0 },
             suction: fluid.capillary.map(|height| weight * height),
@@ -466,7 +470,7 @@ impl WetElement {
             size: solid.area().sqrt(),
         };
         let is_constant = wet.is_linear && wet.void_ratio.is_none() && wet.suction.is_none();
-        Some(Self { constant: is_constant.then(|| wet.constant()), ..wet })
+        Some(Self { constant: is_constant.then(|| Box::new(wet.constant())), ..wet })
     }
 
     /// What opens and flows in the undeformed element.
@@ -474,17 +478,17 @@ impl WetElement {
         let (mut flows, [kx, ky]) = (Flows::default(), self.mobility);
         let mut opens = [OfNodes::default(); MOST_CORNERS];
         for (k, a) in (0..self.points.len()).flat_map(|k| (0..self.pressures.len()).map(move |a| (k, a))) {
-            let (point, slopes) = (&self.points[k], &self.slopes[k]);
-            let (own, share) = (slopes[a], self.biot * point.volume * point.values[a]);
+            let (point, [x, y]) = (&self.points[k], &self.slopes[k]);
+            let share = self.biot * point.volume * point.values[a];
             for node in 0..MOST_NODES {
                 let around = self.hoop.get(k).map_or(0.0, |hoop| hoop[node]);
                 opens[a][0][node] += share * (point.gradients[0][node] + around);
                 opens[a][1][node] += share * point.gradients[1][node];
             }
-            for (conducts, slope) in flows.conducts[a].iter_mut().zip(slopes) {
-                *conducts += point.volume * (kx * own.x * slope.x + ky * own.y * slope.y);
+            for (b, conducts) in flows.conducts[a].iter_mut().enumerate() {
+                *conducts += point.volume * (kx * x[a] * x[b] + ky * y[a] * y[b]);
             }
-            flows.falls[a] += point.volume * ky * own.y * self.weight;
+            flows.falls[a] += point.volume * ky * y[a] * self.weight;
         }
         ConstantFlow { opens, flows }
     }

@@ -56,23 +56,23 @@ fn moves(model: &Model, flow: &PoreFlow) -> Option<String> {
     let across = model.contacts.iter().filter_map(|pair| pair.seam.as_ref()).flat_map(|seam| seam.nodes.keys());
     across.filter_map(|node| flow.of_node[*node]).for_each(|k| free[k] = false);
     for wet in flow.elements.iter().filter(first) {
+        if wet.weight == 0.0 {
+            wet.pressures.iter().for_each(|&k| free[k] = false);
+            continue;
+        }
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, None)).collect();
-        for (point, slopes) in wet.points.iter().zip(&wet.slopes) {
+        for (point, [x, y]) in wet.points.iter().zip(&wet.slopes) {
             let [kx, ky] = wet.mobility;
             for (a, &k) in wet.pressures.iter().enumerate() {
-                let own = slopes[a];
-                let weighs = point.volume * ky * wet.weight * own.y;
+                let weighs = point.volume * ky * wet.weight * y[a];
                 sums[k][0] += weighs;
                 sums[k][1] += weighs.abs();
-                for (slope, pressure) in slopes.iter().zip(&pressures) {
-                    let part = point.volume * pressure * (kx * own.x * slope.x + ky * own.y * slope.y);
+                for (b, pressure) in pressures.iter().enumerate() {
+                    let part = point.volume * pressure * (kx * x[a] * x[b] + ky * y[a] * y[b]);
                     sums[k][0] += part;
                     sums[k][1] += part.abs();
                 }
             }
-        }
-        if wet.weight == 0.0 {
-            wet.pressures.iter().for_each(|&k| free[k] = false);
         }
     }
     let worst =

@@ -172,7 +172,9 @@ pub struct Water {
     pub peaks: Vec<f64>,
     /// The mean pressure itself in excess of that at the start [F/L²]
     pub excess: Vec<f64>,
-    /// What each body has brought with it of the water that it is found to have taken up, less what it took along when it left [L³]
+    /// What each body has taken up while it was there [L³]
+    pub taken: Vec<f64>,
+    /// What each body has brought with it of the water that it is found to hold, less what it took along when it left [L³]
     pub brought: Vec<f64>,
     /// Water that has come between the surfaces of contacts since the start [L³]
     pub between: f64,

@@ -16,6 +16,7 @@ impl Model {
             channels: vec![[Outflow::default(); 2]; flow.channels.len()],
             peaks: vec![0.0; flow.bodies.len()],
             excess: vec![0.0; flow.bodies.len()],
+            taken: vec![0.0; flow.bodies.len()],
             brought: vec![0.0; flow.bodies.len()],
             between: 0.0,
         })
@@ -24,16 +25,11 @@ impl Model {
     /// Water that all bodies have taken up, that is between their surfaces and that has left through outlets, which is none but for errors, and how much has come and gone;
     /// `None` where none flows [L³].
     pub fn balance_of_water(&self, state: &State) -> Option<[f64; 2]> {
-        let flow = self.flow.as_ref()?;
-        let taken = flow.bodies.iter().filter_map(|&body| self.water_of(body, state)).map(|[taken, _]| taken);
-        Some(self.balance(taken, state))
-    }
-
-    /// The same from what each body has taken up.
-    pub fn balance(&self, taken: impl IntoIterator<Item = f64>, state: &State) -> [f64; 2] {
-        let left = (state.water.outlets.iter()).chain(state.water.channels.as_flattened()).map(|outlet| outlet.volume);
-        let all = taken.into_iter().chain(left).chain([state.water.between]);
-        all.fold([0.0; 2], |[sum, size], volume| [sum + volume, size + volume.abs()])
+        self.flow.as_ref()?;
+        let Water { taken, outlets, channels, between, .. } = &state.water;
+        let left = outlets.iter().chain(channels.as_flattened()).map(|outlet| outlet.volume);
+        let all = taken.iter().copied().chain(left).chain([*between]);
+        Some(all.fold([0.0; 2], |[sum, size], volume| [sum + volume, size + volume.abs()]))
     }
 
     /// Mean seepage through an element, −k/γ_w (∇p − γ_w g) in the place where it is now [L/T].
@@ -43,7 +39,8 @@ impl Model {
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(&state.displacement))).collect();
         let (mut sum, mut volume) = (Vector2::zeros(), 0.0);
         for (k, (point, slopes)) in wet.points.iter().zip(&wet.slopes).enumerate() {
-            let mut slope: Vector2<f64> = slopes.iter().zip(&pressures).map(|(slope, p)| slope * *p).sum();
+            let along = |i: usize| slopes[i].iter().zip(&pressures).map(|(slope, p)| slope * p).sum();
+            let mut slope = Vector2::new(along(0), along(1));
             let (f, hoop) = wet.deformed(k, &wet.moved(&state.displacement));
             let mut jacobian = f.trace() - 1.0 + (hoop - 1.0);
             if !wet.is_linear {
@@ -59,26 +56,27 @@ impl Model {
         sum / volume
     }
 
-    /// Notes the mean pressure of each body that is there in excess of that at the start, and the largest so far.
+    /// Notes what each body that is there has taken up, and its mean pressure in excess of that at the start, with the largest so far.
     pub fn note_water(&self, state: &mut State) {
         for (k, &body) in self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate()) {
-            if let Some([_, excess]) = self.stored_water(body, state).filter(|_| state.has(body)) {
-                let Water { peaks, excess: now, .. } = &mut state.water;
+            if let Some([stored, excess]) = self.stored_water(body, state).filter(|_| state.has(body)) {
+                let Water { peaks, excess: now, taken, brought, .. } = &mut state.water;
                 peaks[k] = if excess.abs() > peaks[k].abs() { excess } else { peaks[k] };
-                now[k] = excess;
+                (now[k], taken[k]) = (excess, stored - brought[k]);
             }
         }
     }
 
-    /// What a body in which water flows has taken up of it while it was there, ∫ (b (J − 1) + (p − p₀)/Q) dV since it came, and its mean pressure in
-    /// excess of that at the start; `None` of any other [L³], [F/L²].
+    /// What a body in which water flows has taken up of it while it was there, and its mean pressure in
+    /// excess of that at the start, if it is there; `None` of any other [L³], [F/L²].
     pub fn water_of(&self, body: usize, state: &State) -> Option<[f64; 2]> {
         let number = self.flow.as_ref()?.bodies.iter().position(|other| *other == body)?;
-        let [prescribed, excess] = if state.has(body) { self.stored_water(body, state)? } else { [0.0, f64::NAN] };
-        Some([prescribed - state.water.brought[number], excess])
+        let excess = if state.has(body) { state.water.excess[number] } else { f64::NAN };
+        Some([state.water.taken[number], excess])
     }
 
-    /// The same, but for what it brought.
+    /// What a body holds of water beyond that at the start, ∫ (b (J − 1) + (p − p₀)/Q) dV, what it brought included, and its mean pressure in excess of that
+    /// at the start; `None` of one in which none flows [L³], [F/L²].
     pub(super) fn stored_water(&self, body: usize, state: &State) -> Option<[f64; 2]> {
         let flow = self.flow.as_ref().filter(|flow| flow.bodies.contains(&body))?;
         let [mut taken, mut excess, mut volume] = [0.0; 3];

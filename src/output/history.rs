@@ -201,10 +201,9 @@ impl History {
 /// Water of the bodies in which it flows, flow through its outlets, and their balance.
 fn water_row(model: &Model, state: &State) -> Vec<f64> {
     let Some(flow) = &model.flow else { return Vec::new() };
-    let (mut row, mut all) = (Vec::new(), Vec::new());
+    let mut row = Vec::new();
     for (k, &body) in flow.bodies.iter().enumerate() {
         let [taken, excess] = model.water_of(body, state).unwrap_or_default();
-        all.push(taken);
         let degree = if state.has(body) { state.water.consolidation(k) } else { f64::NAN };
         row.extend([excess, degree, taken]);
     }
@@ -212,7 +211,7 @@ fn water_row(model: &Model, state: &State) -> Vec<f64> {
         let outlet = state.water.outlets.get(k).copied().unwrap_or_default();
         row.extend([outlet.rate, outlet.volume]);
     }
-    row.push(model.balance(all, state)[0]);
+    row.extend(model.balance_of_water(state).map(|[error, _]| error));
     row
 }
 
