@@ -288,8 +288,11 @@ fn the_tangent_is_that_of_the_residual() {
     for section in ["plane_strain", "axisymmetric"] {
         for kind in ["q8", "q4", "t6", "t3", "reduced"] {
             for law in &laws {
+                // Once more elements than two threads evaluate at a time
+                let many = (section, kind, &law["model"]) == ("plane_strain", "q8", &json!("hencky"));
+                let elements = if many { [3, 30] } else { [2, 2] };
                 let blocks =
-                    Blocks::default().block("soil", [2, 2], |r, s| [1.0 + r + 0.1 * s, 0.9 * s + 0.05 * r * s]);
+                    Blocks::default().block("soil", elements, |r, s| [1.0 + r + 0.1 * s, 0.9 * s + 0.05 * r * s]);
                 let mut body = soil();
                 body["material"] = law.clone();
                 body["pore_fluid"] = json!({"bulk_modulus": 20, "porosity": 0.5, "permeability": 0.3, "permeability_y": 0.1, "unit_weight": 1,
@@ -302,7 +305,7 @@ fn the_tangent_is_that_of_the_residual() {
                     "steps": [{"name": "load", "duration": 1, "dt": {"initial": 0.1}, "supports": [{"on": "soil_bottom", "ux": 0, "uy": 0}],
                         "drainage": [{"on": "soil_top", "head": 1, "filter": 0.7}, {"on": "soil_right", "flux": 0.1}, {"on": "soil_left", "seepage": true}]}],
                 });
-                let (model, state, u) = strained(&case, if law["sigma_y"].is_null() { 0.01 } else { 0.002 });
+                let (model, state, u) = strained(&case, if law["sigma_y"].is_null() && !many { 0.01 } else { 0.002 });
                 let trial = Trial::new(&state, &model.steps[0], 0.3, 0.2);
                 let error = tangent_error(&model, trial, &u, 1e-6);
                 assert!(error < 2e-6, "{section}, {kind}, {law}: {error:.1e}");

@@ -50,6 +50,19 @@ fn terzaghi(time: f64) -> [f64; 2] {
     })
 }
 
+/// Bodies that share nodes start with one pressure there.
+#[test]
+fn adjacent_bodies_start_with_one_pressure() {
+    let mut case = excavation(6, "linear");
+    case["bodies"]["low"]["pore_fluid"]["pressure"] = json!("10*(3 - y) + 1");
+    let message = refusal(&case);
+    let words = [
+        "bodies.low.pore_fluid.pressure: is ",
+        " where an adjacent body starts with 10: the pressure of flowing water is continuous there",
+    ];
+    assert!(words.iter().all(|word| message.contains(word)), "{message}");
+}
+
 fn node_at(model: &Model, y: f64) -> usize {
     model.mesh.nodes.iter().position(|x| x.x < 1e-9 && (x.y - y).abs() < 1e-9).expect("a node")
 }
