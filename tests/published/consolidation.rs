@@ -387,7 +387,7 @@ fn specimen(rate: Option<f64>, size: f64) -> Value {
         "bodies": {"soil": {
             "material": {"model": "cam_clay", "lambda": slope_of(lambda), "kappa": slope_of(kappa), "M": slope, "G": shear / size, "p_c": start, "p_min": 1},
             "initial_stress": {"components": {"xx": -start, "yy": -start, "zz": -start}},
-            "pore_fluid": {"bulk_modulus": 1e7 / size, "porosity": 0.5, "permeability": 1e6 * size, "unit_weight": 1}}},
+            "pore_fluid": {"bulk_modulus": 1e7 / size, "porosity": 0.5, "permeability": 1e4 * size, "unit_weight": 1}}},
         "steps": [{"name": "shear", "duration": 1, "dt": {"initial": 2.5e-3},
             "supports": [{"on": "soil_bottom", "uy": 0}, {"on": "soil_left", "ux": 0}, {"on": "soil_top", "uy": format!("exp(-{strain}*t) - 1")}],
             "loads": [{"on": "soil_right", "pressure": format!("{start}")}], "drainage": drainage}],

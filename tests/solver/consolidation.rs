@@ -305,7 +305,7 @@ fn the_tangent_is_that_of_the_residual() {
                     "steps": [{"name": "load", "duration": 1, "dt": {"initial": 0.1}, "supports": [{"on": "soil_bottom", "ux": 0, "uy": 0}],
                         "drainage": [{"on": "soil_top", "head": 1, "filter": 0.7}, {"on": "soil_right", "flux": 0.1}, {"on": "soil_left", "seepage": true}]}],
                 });
-                let (model, state, u) = strained(&case, if law["sigma_y"].is_null() && !many { 0.01 } else { 0.002 });
+                let (model, state, u) = strained(&case, if law["sigma_y"].is_null() && !many { 0.01 } else { 0.001 });
                 let trial = Trial::new(&state, &model.steps[0], 0.3, 0.2);
                 let error = tangent_error(&model, trial, &u, 1e-6);
                 assert!(error < 2e-6, "{section}, {kind}, {law}: {error:.1e}");

@@ -57,8 +57,8 @@ fn adjacent_bodies_start_with_one_pressure() {
     case["bodies"]["low"]["pore_fluid"]["pressure"] = json!("10*(3 - y) + 1");
     let message = refusal(&case);
     let words = [
-        "bodies.low.pore_fluid.pressure: is ",
-        " where an adjacent body starts with 10: the pressure of flowing water is continuous there",
+        "bodies.high.pore_fluid.pressure: is 10 ",
+        " where an adjacent body starts with 11: the pressure of flowing water is continuous there",
     ];
     assert!(words.iter().all(|word| message.contains(word)), "{message}");
 }
