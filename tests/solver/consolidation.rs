@@ -308,7 +308,7 @@ fn the_tangent_is_that_of_the_residual() {
                 let (model, state, u) = strained(&case, if law["sigma_y"].is_null() && !many { 0.01 } else { 0.001 });
                 let trial = Trial::new(&state, &model.steps[0], 0.3, 0.2);
                 let error = tangent_error(&model, trial, &u, 1e-6);
-                assert!(error < 2e-6, "{section}, {kind}, {law}: {error:.1e}");
+                assert!(error < 1e-8, "{section}, {kind}, {law}: {error:.1e}");
             }
         }
     }
