@@ -182,7 +182,7 @@ fn the_tangent_is_that_of_the_residual() {
             model.bodies[0].nodes.iter().for_each(|&node| u[2 * node + 1] += gap);
             let error = tangent_error(&model, Trial::new(&state, &model.steps[0], 0.3, 0.2), &u, 1e-6);
             println!("{kind}, {gap}, {more}: {error:.1e}");
-            assert!(error < 5e-6, "{kind}, {gap}, {more}: {error:.1e}");
+            assert!(error < 1e-8, "{kind}, {gap}, {more}: {error:.1e}");
         }
     }
 }

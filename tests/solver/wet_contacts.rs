@@ -207,7 +207,7 @@ fn the_tangent_is_that_of_the_residual() {
                     let trial = Trial::new(&state, &model.steps[0], 0.3, 0.2);
                     let error = tangent_error(&model, trial, &u, 1e-6);
                     println!("{section}, {kind}, {gap}, {friction}, {more}: {error:.1e}");
-                    assert!(error < 5e-6, "{section}, {kind}, {gap}, {friction}, {more}: {error:.1e}");
+                    assert!(error < 1e-8, "{section}, {kind}, {gap}, {friction}, {more}: {error:.1e}");
                 }
             }
         }
@@ -230,7 +230,7 @@ fn the_tangent_is_that_of_the_residual_of_what_drains() {
         (open.aperture, open.conductance) = (0.05, 2.0);
         let error = tangent_error(&model, Trial::new(&state, &model.steps[0], 0.3, 0.2), &u, 1e-6);
         println!("{kind}, {more}: {error:.1e}");
-        assert!(error < 5e-6, "{kind}, {more}: {error:.1e}");
+        assert!(error < 1e-8, "{kind}, {more}: {error:.1e}");
     }
 }
 
