@@ -32,6 +32,8 @@ class Bodies extends BodiesPicture {
   async open(run) {
     this.run = run;
     this.solid = run.solid;
+    // Until one of its frames is shown there is none to draw: that of the run before may lie beyond its last.
+    this.frame = null;
     const { solid } = this;
     const [places, connectivity, ends, kinds, bodies] = await Promise.all([
       unpack(solid.places), unpack(solid.connectivity, "u32"), unpack(solid.ends, "u32"), unpack(solid.kinds, "u8"),
@@ -143,7 +145,7 @@ class Bodies extends BodiesPicture {
   async show(k, quiet = false) {
     if (!this.solid) return;
     this.wanted = Math.max(0, Math.min(this.solid.frames.length - 1, k));
-    const wanted = this.wanted;
+    const { run, wanted } = this;
     const { frame, chunks, at_hand } = this.need(wanted);
     if (!at_hand) await Promise.all(chunks.map((chunk) => unpack(chunk)));
     const [contact] = this.contact ? [this.contactFrame(frame.time)] : [null];
@@ -152,7 +154,7 @@ class Bodies extends BodiesPicture {
         .filter((chunk) => chunk && !peek(chunk)).map((chunk) => unpack(chunk)));
     }
     if (this.bars) await this.bars.need(frame.time);
-    if (this.wanted !== wanted) return;
+    if (this.wanted !== wanted || this.run !== run) return;
     this.frame = wanted;
     if (this.hidden !== `${frame.hidden}`) this.uncover(frame.hidden);
     this.slider.value = wanted;
