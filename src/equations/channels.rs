@@ -7,7 +7,6 @@
 //! in the balance (4) of `pore_flow.rs`. T is that of the surfaces at the start of the increment, as the permeability of the bodies is. A well that
 //! holds a pressure does so to a millionth.
 
-use super::coupling::joined;
 use super::sums::{Sums, TrialFailure};
 use super::trial::Trial;
 use super::water_balances::{Balances, Times};
@@ -167,15 +166,12 @@ impl Channel<'_> {
             let [a, b] = [pressures[a], pressures[b]];
             balances.let_out(a, volume, size);
             balances.let_out(b, -volume, size);
-            let nodes = joined(flow, [a, b]);
-            let dofs = 2 * nodes.len();
-            let node = |k: usize| nodes.iter().position(|node| *node == flow.dof(k) / 2).unwrap_or_default();
-            let place = |k: usize| 2 * node(k) + flow.dof(k) % 2;
-            let mut tangent = vec![0.0; dofs * dofs];
-            for (row, column, sign) in [(a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)] {
-                tangent[place(column) * dofs + place(row)] -= sign * flow.scales[row] * flow.scales[column] * passes;
+            // Of each node the first dof.
+            let mut tangent = [0.0; 16];
+            for (place, row, column, sign) in [(0, a, a, 1.0), (10, b, b, 1.0), (8, a, b, -1.0), (2, b, a, -1.0)] {
+                tangent[place] = -sign * flow.scales[row] * flow.scales[column] * passes;
             }
-            sums.couple(&nodes, &tangent);
+            sums.couple(&[a, b].map(|k| flow.node(k)), &tangent);
         }
     }
 

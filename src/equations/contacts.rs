@@ -98,9 +98,10 @@ pub(super) fn add_water(model: &Model, trial: Trial, responses: &[PairResponse],
         }
     }
     for (_, closed) in responses.iter().flat_map(PairResponse::all_acting) {
-        let dofs = closed.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        for (dof, taken) in dofs.zip(closed.taken).filter(|(dof, _)| *dof >= flow.dof(0)) {
-            if let Some(change) = water.change.get_mut(dof - flow.dof(0)) {
+        let pressures = closed.nodes.iter().zip(closed.taken.iter().step_by(2));
+        for (node, taken) in pressures.filter(|(node, _)| **node >= flow.first) {
+            // Where the terms are evaluated one by one, bodies may have added nothing yet.
+            if let Some(change) = water.change.get_mut(node - flow.first) {
                 *change += taken;
                 water.between += taken;
             }

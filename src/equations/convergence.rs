@@ -105,14 +105,13 @@ impl ConvergenceCriterion {
         for wet in wet.filter(|wet| is_there(model.body_of_element[wet.element])) {
             let [solid, depth] = [model.solids[wet.element].volume(), model.solids[wet.element].mean_weight()];
             let modulus = model.body_of(wet.element).material.description().p_wave_modulus * depth;
-            for &node in &wet.nodes[model.mesh.elements[wet.element].nodes.len()..] {
+            for &node in &wet.nodes[wet.in_mesh..] {
                 lone[node] = false;
                 stiffness[node][0] += modulus * modulus * (solid / depth);
                 stiffness[node][1] += modulus * modulus;
             }
         }
-        let channels =
-            model.flow.iter().flat_map(|flow| flow.channels.values().flatten().map(|(_, &k)| flow.dof(k) / 2));
+        let channels = model.flow.iter().flat_map(|flow| flow.channels.values().flatten().map(|(_, &k)| flow.node(k)));
         channels.for_each(|node| lone[node] = false);
         bars::stiffness(model, step, |node, [strained, moved]| {
             let node = model.ties.original(node);
@@ -123,10 +122,7 @@ impl ConvergenceCriterion {
         let bars = bars::own_nodes(model).map(|own| BalancedSet { nodes: own.clone(), contact: None });
         let of_body =
             |body: &Body| BalancedSet { nodes: model.ties.originals(body.nodes.iter().copied()), contact: None };
-        let of_flow = |flow: &PoreFlow| BalancedSet {
-            nodes: (flow.first..flow.first + flow.count() / 2).collect(),
-            contact: None,
-        };
+        let of_flow = |flow: &PoreFlow| BalancedSet { nodes: flow.nodes().collect(), contact: None };
         let water = model.flow.iter().map(of_flow);
         let there = model.bodies.iter().enumerate().filter(|(body, _)| is_there(*body));
         let bodies = there.map(|(_, body)| of_body(body));

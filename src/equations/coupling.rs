@@ -48,18 +48,11 @@ pub(super) struct Unsymmetric {
     pub around: Vec<usize>,
 }
 
-/// Nodes that stand for two pressures.
-pub(super) fn joined(flow: &PoreFlow, pressures: [usize; 2]) -> Vec<usize> {
-    let mut nodes = pressures.map(|k| flow.dof(k) / 2).to_vec();
-    nodes.dedup();
-    nodes
-}
-
 /// Nodes that stand for pressures of neighbours along contacts where water flows between wet bodies.
-fn channels(model: &Model, flow: &PoreFlow) -> Vec<Vec<usize>> {
+fn channels(model: &Model, flow: &PoreFlow) -> Vec<[usize; 2]> {
     let conduits = model.contacts.iter().filter_map(|pair| pair.conduit.as_ref()).filter(|conduit| conduit.is_wet());
-    let of = |conduit: &Conduit| -> Vec<Vec<usize>> {
-        conduit.line.pieces().map(|(a, b)| joined(flow, [conduit.pressures[a], conduit.pressures[b]])).collect()
+    let of = |conduit: &Conduit| -> Vec<[usize; 2]> {
+        conduit.line.pieces().map(|(a, b)| [a, b].map(|k| flow.node(conduit.pressures[k]))).collect()
     };
     conduits.flat_map(of).collect()
 }
@@ -78,8 +71,8 @@ pub(super) struct Layout {
     blocks: Vec<BlockPosition>,
     /// Start of each element's blocks
     starts: Vec<usize>,
-    /// The blocks of each element that water flows through: for each node that stands for its pressures those of all its nodes in the node's
-    /// column, then those of its nodes in the mesh in the node's row
+    /// The blocks of each element that water flows through: for each of its pressures those of all its nodes in the pressure's column, then those of
+    /// its nodes in the mesh in the pressure's row
     water_blocks: Vec<BlockPosition>,
     /// Start of the blocks of each such element, and the end
     water_starts: Vec<usize>,
@@ -141,13 +134,13 @@ impl Layout {
         let others =
             edges.map(|edge| &edge[..]).chain(of_bars.iter().copied()).chain(groups.iter().map(|group| &group[..]));
         let wet = model.flow.iter().flat_map(|flow| &flow.elements).map(|wet| &wet.nodes[..]);
-        let joined: Vec<Vec<usize>> = model.flow.iter().flat_map(|flow| channels(model, flow)).collect();
+        let joined: Vec<[usize; 2]> = model.flow.iter().flat_map(|flow| channels(model, flow)).collect();
         let all = elements.chain(wet).chain(joined.iter().map(|nodes| &nodes[..])).chain(others);
         let tied = self.tied(all.clone());
         let pattern = Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..])));
         let unsymmetric = self.all_unsymmetric(&pattern);
-        let pressures = model.flow.as_ref().map_or(0..0, |flow| flow.first..flow.first + flow.count() / 2);
-        self.pattern = Arc::new(pattern.symmetric_but(unsymmetric).with_saddle(pressures));
+        let pressures = model.flow.as_ref().map_or(0..0, PoreFlow::nodes);
+        self.pattern = Arc::new(pattern.symmetric_but(unsymmetric).with_pressures(pressures));
         let mut blocks = std::mem::take(&mut self.blocks);
         blocks.clear();
         blocks.reserve_exact(self.starts.last().copied().unwrap_or(0));
@@ -255,10 +248,10 @@ impl Layout {
         let model = self.model.clone();
         for wet in model.flow.iter().flat_map(|flow| &flow.elements) {
             self.water_starts.push(self.water_blocks.len());
-            for pressures in &wet.nodes[wet.in_mesh..] {
+            for pressure in &wet.nodes[wet.in_mesh..] {
                 let (all, in_mesh) = (&wet.nodes, &wet.nodes[..wet.in_mesh]);
-                let column = all.iter().map(|row| self.block(*row, *pressures));
-                let row = in_mesh.iter().map(|column| self.block(*pressures, *column));
+                let column = all.iter().map(|row| self.block(*row, *pressure));
+                let row = in_mesh.iter().map(|column| self.block(*pressure, *column));
                 let found: Vec<BlockPosition> = column.chain(row).collect();
                 self.water_blocks.extend(found);
             }
@@ -271,8 +264,8 @@ impl Layout {
         self.pattern.coupled(self.original(row), self.original(column))
     }
 
-    /// Blocks of an element that water flows through, by its number among them: for each node that stands for its pressures those of all its
-    /// nodes in the node's column, then those of its nodes in the mesh in the node's row.
+    /// Blocks of an element that water flows through, by its number among them: for each of its pressures those of all its nodes in the pressure's
+    /// column, then those of its nodes in the mesh in the pressure's row.
     pub fn blocks_of_water(&self, number: usize) -> &[BlockPosition] {
         &self.water_blocks[self.water_starts[number]..self.water_starts[number + 1]]
     }

@@ -64,8 +64,7 @@ pub(super) fn add(
         for &(k, at, area) in &drain.corners {
             let [q, slope] = drain.flow(flow.pressure(k, Some(u)), at, trial.time);
             if !q.is_finite() {
-                let node = flow.corners[k].unwrap_or_default();
-                return Err(TrialFailure::Undefined { node: model.mesh.node_tags[node], time: trial.time });
+                return Err(TrialFailure::Undefined { node: model.mesh.node_tags[flow.corners[k]], time: trial.time });
             }
             outlet.let_out(area * q, times.span);
             balances.let_out(k, times.span * area * q, times.span * area * q.abs());

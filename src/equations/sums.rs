@@ -74,27 +74,21 @@ impl Sums<'_> {
     ) {
         let Some(tangent) = &mut self.tangent else { return };
         let (nodes, in_mesh) = (wet.nodes.len(), wet.in_mesh);
-        let (mut corners, nothing) = ([[None; 2]; MOST_CORNERS], OfNodes::default());
         let mut scaled = *opens;
         for (scaled, scale) in scaled.iter_mut().zip(scales) {
             scaled.as_flattened_mut().iter_mut().for_each(|part| *part *= -scale);
         }
-        wet.places.iter().enumerate().for_each(|(a, place)| corners[place / 2 - in_mesh][place % 2] = Some(a));
-        let of_nodes = self.layout.blocks_of_water(number).chunks_exact(nodes + in_mesh);
-        for (blocks, own) in of_nodes.zip(&corners) {
+        let of_pressures = self.layout.blocks_of_water(number).chunks_exact(nodes + in_mesh);
+        for (b, (blocks, [x, y])) in of_pressures.zip(&scaled).enumerate() {
             let (column, row) = blocks.split_at(nodes);
             let (solid, water) = column.split_at(in_mesh);
-            let [[first_x, first_y], [second_x, second_y]] = own.map(|a| a.map_or(&nothing, |a| &scaled[a]));
             for (k, (block, transposed)) in solid.iter().zip(row).enumerate() {
-                tangent.add_block(*block, [[first_x[k], first_y[k]], [second_x[k], second_y[k]]]);
-                tangent.add_block(*transposed, [[first_x[k], second_x[k]], [first_y[k], second_y[k]]]);
+                tangent.add_column(*block, 0, [x[k], y[k]]);
+                tangent.values[transposed.value(0, 0)] += x[k];
+                tangent.values[transposed.value(0, 1)] += y[k];
             }
-            for (block, others) in water.iter().zip(&corners) {
-                let between = |a: Option<usize>, b: Option<usize>| match (a, b) {
-                    (Some(a), Some(b)) => -scales[a] * scales[b] * takes[a][b],
-                    _ => 0.0,
-                };
-                tangent.add_block(*block, own.map(|b| others.map(|a| between(a, b))));
+            for (a, block) in water.iter().enumerate() {
+                tangent.values[block.value(0, 0)] -= scales[a] * scales[b] * takes[a][b];
             }
         }
     }

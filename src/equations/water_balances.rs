@@ -23,7 +23,7 @@ impl Times {
 
 /// Balances of the pressures, as they are summed up.
 pub(super) struct Balances {
-    /// Whether each has any water: it may stand for none, or for one that only absent bodies have
+    /// Whether each has any water: only absent bodies may have it
     is_wet: Vec<bool>,
     /// Δm [L³]
     change: Vec<f64>,
@@ -53,11 +53,15 @@ impl Balances {
 
     /// Makes equations of them; returns Δm.
     pub fn end(self, flow: &PoreFlow, u: &[f64], sums: &mut Sums) -> Vec<f64> {
+        let hold = |dof: usize, sums: &mut Sums| {
+            sums.force[dof] -= flow.spare() * u[dof];
+            sums.stiffen(dof, dof, -flow.spare());
+        };
         for (k, [sum, size]) in self.all.into_iter().enumerate() {
             let (dof, scale) = (flow.dof(k), flow.scales[k]);
+            hold(dof + 1, sums);
             if !self.is_wet[k] {
-                sums.force[dof] -= flow.spare() * u[dof];
-                sums.stiffen(dof, dof, -flow.spare());
+                hold(dof, sums);
                 continue;
             }
             sums.force[dof] -= scale * sum;

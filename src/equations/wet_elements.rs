@@ -13,9 +13,7 @@ use super::trial::Trial;
 use super::water_balances::{Balances, Times};
 use crate::laws::bulk::{MaterialFailure, cofactor};
 use crate::model::imposed::filling;
-use crate::model::pore_flow::{
-    Flows, MOST_CORNERS, MOST_NODES, MOST_POINTS, OfCorners, OfNodes, PoreFlow, WetElement, WetPoint,
-};
+use crate::model::pore_flow::{Flows, MOST_CORNERS, MOST_NODES, MOST_POINTS, OfCorners, OfNodes, PoreFlow, WetElement};
 use crate::model::{Activated, Model};
 
 /// Number of elements that one thread evaluates at a time: what they answer is to stay at hand until it is added.
@@ -100,9 +98,9 @@ impl Answer {
 
     /// Adds what the pores have opened by at a point, b (J − 1), and what that changes by.
     #[inline(always)]
-    fn open(&mut self, wet: &WetElement, point: &WetPoint, opened: f64, by: &OfNodes) {
-        for (a, value) in point.values[..wet.pressures.len()].iter().enumerate() {
-            let share = point.volume * value;
+    fn open(&mut self, wet: &WetElement, k: usize, opened: f64, by: &OfNodes) {
+        for (a, value) in wet.shape[k].values[..wet.pressures.len()].iter().enumerate() {
+            let share = wet.points[k].volume * value;
             self.change[a] += share * opened;
             let opens = self.by.opens[a].as_flattened_mut().iter_mut();
             opens.zip(by.as_flattened()).for_each(|(opens, by)| *opens += share * wet.biot * by);
@@ -113,17 +111,13 @@ impl Answer {
     #[inline(always)]
     fn balance(&mut self, wet: &WetElement, begun: &Begun, span: f64, now: &[f64; MOST_CORNERS], moved: &OfNodes) {
         let Flows { conducts, falls } = &begun.flows;
-        // Node by node, so that the sums of the corners do not wait for each other.
-        for (i, k) in (0..2).flat_map(|i| (0..MOST_NODES).map(move |k| (i, k))) {
-            let way = moved[i][k] - begun.moved[i][k];
-            for (a, opens) in self.by.opens.iter().enumerate() {
-                let part = opens[i][k] * way;
-                self.force[i][k] -= now[a] * opens[i][k];
-                self.size[a] += part.abs();
-                if wet.constant.is_some() {
-                    self.change[a] += part;
-                }
-            }
+        let way: OfNodes = [0, 1].map(|i| std::array::from_fn(|k| moved[i][k] - begun.moved[i][k]));
+        for (a, opens) in self.by.opens.iter().enumerate() {
+            let [opened, size] = sum_of_products(opens, &way);
+            self.size[a] += size;
+            self.change[a] += if wet.constant.is_some() { opened } else { 0.0 };
+            let forces = self.force.as_flattened_mut().iter_mut().zip(opens.as_flattened());
+            forces.for_each(|(force, opens)| *force -= now[a] * opens);
         }
         for a in 0..wet.pressures.len() {
             self.change[a] -= begun.opened[a];
@@ -139,6 +133,22 @@ impl Answer {
             }
         }
     }
+}
+
+/// Σ a b over all nodes, and Σ |a b|, in sums that do not wait for each other.
+#[inline(always)]
+fn sum_of_products(a: &OfNodes, b: &OfNodes) -> [f64; 2] {
+    let mut sums = [[0.0; 4]; 2];
+    let ((a, a_rest), (b, b_rest)) = (a.as_flattened().as_chunks::<4>(), b.as_flattened().as_chunks::<4>());
+    let mut add = |a: &[f64], b: &[f64]| {
+        for (i, (a, b)) in a.iter().zip(b).enumerate() {
+            let part = a * b;
+            (sums[0][i], sums[1][i]) = (sums[0][i] + part, sums[1][i] + part.abs());
+        }
+    };
+    a.iter().zip(b).for_each(|(a, b)| add(a, b));
+    add(a_rest, b_rest);
+    sums.map(|sums| sums.iter().sum())
 }
 
 /// J of a deformed element at a point.
@@ -158,7 +168,7 @@ fn jacobian(wet: &WetElement, (f, hoop): &(Matrix2<f64>, f64)) -> Result<f64, Ma
 fn opens_by(wet: &WetElement, k: usize, (f, stretch): &(Matrix2<f64>, f64)) -> OfNodes {
     let linear = (Matrix2::identity(), 1.0);
     let (area, plane) = if wet.is_linear { linear } else { (cofactor(f) * *stretch, f.determinant()) };
-    let mut by = wet.points[k].gradients_by(&area);
+    let mut by = wet.gradients_by(k, &area);
     if let Some(hoop) = wet.hoop.get(k) {
         by[0].iter_mut().zip(hoop).for_each(|(by, around)| *by += plane * around);
     }
@@ -177,7 +187,7 @@ pub fn trapped(wet: &WetElement, u: &[f64]) -> Result<DMatrix<f64>, MaterialFail
         let deformed = wet.deformed(k, &wet.moved(u));
         jacobian(wet, &deformed)?;
         let by = opens_by(wet, k, &deformed);
-        for (a, value) in point.values[..corners].iter().enumerate() {
+        for (a, value) in wet.shape[k].values[..corners].iter().enumerate() {
             for (node, i) in (0..nodes).flat_map(|node| [(node, 0), (node, 1)]) {
                 opens[(a, 2 * node + i)] += wet.biot * point.volume * value * by[i][node];
             }
@@ -299,16 +309,16 @@ impl Increment<'_> {
             begun.flows = constant.flows;
             return Ok(());
         }
-        for (k, (point, slopes)) in wet.points.iter().zip(&wet.slopes).enumerate() {
+        for (k, point) in wet.points.iter().enumerate() {
             let was = wet.deformed(k, &moved);
             let jacobian = jacobian(wet, &was)?;
-            let share_of_k = point.volume * wet.permeability(jacobian, point.pressure(&pressures));
+            let share_of_k = point.volume * wet.permeability(jacobian, wet.pressure(k, &pressures));
             let [conducts, falls] = conducts(wet, &was).map(|part| part * share_of_k);
-            let (falls, [x, y]) = (falls * Vector2::new(0.0, wet.weight), slopes);
+            let (falls, [x, y]) = (falls * Vector2::new(0.0, wet.weight), wet.slopes(k));
             let along: OfCorners =
                 [0, 1].map(|i| std::array::from_fn(|a| conducts[(0, i)] * x[a] + conducts[(1, i)] * y[a]));
             for a in 0..MOST_CORNERS {
-                begun.opened[a] += wet.biot * point.volume * point.values[a] * (jacobian - 1.0);
+                begun.opened[a] += wet.biot * point.volume * wet.shape[k].values[a] * (jacobian - 1.0);
                 begun.flows.falls[a] += x[a] * falls.x + y[a] * falls.y;
                 for b in 0..MOST_CORNERS {
                     begun.flows.conducts[a][b] += along[0][a] * x[b] + along[1][a] * y[b];
@@ -330,15 +340,21 @@ impl Increment<'_> {
     ) -> Result<(), MaterialFailure> {
         let (moved, stiffens) = (wet.moved(self.u), wanted && wet.presses && !wet.is_linear);
         answer.clear(stiffens);
-        for (k, point) in wet.points.iter().enumerate() {
+        let mut across = [[0.0; MOST_NODES]; MOST_NODES];
+        for k in 0..wet.points.len() {
             let deformed = wet.deformed(k, &moved);
             let opened = wet.biot * (jacobian(wet, &deformed)? - 1.0);
-            answer.pores[k] = [point.pressure(now), opened];
+            answer.pores[k] = [wet.pressure(k, now), opened];
             if wet.constant.is_none() {
-                answer.open(wet, point, opened, &opens_by(wet, k, &deformed));
+                answer.open(wet, k, opened, &opens_by(wet, k, &deformed));
             }
             if stiffens {
-                stiffen(wet, k, &deformed, answer.pores[k][0], &mut answer.stiffness);
+                stiffen(wet, k, &deformed, answer.pores[k][0], &mut across, &mut answer.stiffness);
+            }
+        }
+        if stiffens {
+            for (b, [_, of_y]) in answer.stiffness.iter_mut().enumerate() {
+                of_y.iter_mut().enumerate().for_each(|(a, of_y)| *of_y += across[b][a] - across[a][b]);
             }
         }
         answer.energies = self.energies(wet, &answer.pores);
@@ -364,10 +380,11 @@ impl Increment<'_> {
     }
 }
 
-/// Adds ∂f/∂u_x of (5) at a point of a deformed element.
+/// Adds ∂f/∂u_x of (5) at a point of a deformed element: the first term below to `across`, without what is antisymmetric to it.
 ///
 /// ```text
-/// J = h det F:  ∂²J = h ∂² det F + ∂ det F ∂h + ∂h ∂ det F,   ∂² det F/∂u_ax ∂u_by = N_a,x N_b,y − N_a,y N_b,x,   h by u_x alone
+/// J = h det F:  ∂²J = h ∂² det F + ∂ det F ∂h + ∂h ∂ det F,   h by u_x alone
+/// ∂² det F/∂u_ax ∂u_by = N_a,x N_b,y − N_a,y N_b,x = det ∂ξ/∂X (N_a,ξ N_b,η − N_a,η N_b,ξ)
 /// ```
 #[inline(always)]
 fn stiffen(
@@ -375,19 +392,18 @@ fn stiffen(
     k: usize,
     (f, stretch): &(Matrix2<f64>, f64),
     pressure: f64,
+    across: &mut [[f64; MOST_NODES]; MOST_NODES],
     stiffness: &mut [OfNodes; MOST_NODES],
 ) {
-    let point = &wet.points[k];
+    let (point, [first, second]) = (&wet.points[k], &wet.shape[k].of_nodes);
     let share = wet.biot * pressure * point.volume;
-    // A copy is not written to with the stiffness, so that its loops are vectors of the processor.
-    let [x, y] = point.gradients;
-    for (b, [_, of_y]) in stiffness.iter_mut().enumerate() {
-        let (own_x, own_y) = (share * stretch * x[b], share * stretch * y[b]);
-        let added: [f64; MOST_NODES] = std::array::from_fn(|a| x[a] * own_y - y[a] * own_x);
-        of_y.iter_mut().zip(added).for_each(|(of_y, added)| *of_y += added);
+    let of_area = share * stretch * point.map.determinant();
+    for (across, second) in across.iter_mut().zip(second) {
+        let own = of_area * second;
+        across.iter_mut().zip(first).for_each(|(across, first)| *across += own * first);
     }
     if let Some(hoop) = wet.hoop.get(k) {
-        let plane = point.gradients_by(&cofactor(f));
+        let plane = wet.gradients_by(k, &cofactor(f));
         for (b, [of_x, of_y]) in stiffness.iter_mut().enumerate() {
             for a in 0..MOST_NODES {
                 let (around_a, around_b) = (hoop[a], hoop[b]);

@@ -1,4 +1,5 @@
-//! Compressed-column matrix with 2×2 blocks: each node has two unknowns, and the pattern is symmetric.
+//! Compressed-column matrix with 2×2 blocks: each node has two unknowns, and the pattern is symmetric. Of a pressure only the first is one: the
+//! second has a diagonal value and no others.
 //!
 //! A pattern knows which nodes' values may be unsymmetric, as those say who add them: A_ij = A_ji wherever one of i and j is not
 //! among them. Values are never compared. A constrained dof has an equation of its own, A_dd x_d = b_d; what its column has elsewhere counts
@@ -16,8 +17,8 @@ pub struct Pattern {
     rows: Vec<usize>,
     /// Whether values between each node and others of this kind, or its own, may be unsymmetric
     unsymmetric: Vec<bool>,
-    /// Nodes each of whose unknowns gives a stable system a negative eigenvalue, as multipliers and pressures do
-    saddle: Range<usize>,
+    /// Nodes that stand for a pressure: each is one unknown, which gives a stable system a negative eigenvalue
+    pressures: Range<usize>,
 }
 
 /// Position of the 2×2 block of a (row node, column node) pair in the values.
@@ -63,7 +64,7 @@ impl Pattern {
             rows.extend_from_slice(list);
             starts.push(rows.len());
         }
-        Self { starts, rows, unsymmetric: vec![true; nodes], saddle: 0..0 }
+        Self { starts, rows, unsymmetric: vec![true; nodes], pressures: 0..0 }
     }
 
     /// The same for values that are symmetric but between these nodes.
@@ -71,14 +72,19 @@ impl Pattern {
         Self { unsymmetric, ..self }
     }
 
-    /// The same with nodes each of whose unknowns gives a stable system a negative eigenvalue.
-    pub fn with_saddle(self, saddle: Range<usize>) -> Self {
-        Self { saddle, ..self }
+    /// The same with nodes that stand for a pressure each: one unknown, which gives a stable system a negative eigenvalue.
+    pub fn with_pressures(self, pressures: Range<usize>) -> Self {
+        Self { pressures, ..self }
     }
 
-    /// Whether an unknown of a node gives a stable system a negative eigenvalue.
-    pub(super) fn is_of_saddle(&self, node: usize) -> bool {
-        self.saddle.contains(&node)
+    /// Whether a node stands for a pressure.
+    pub(super) fn is_pressure(&self, node: usize) -> bool {
+        self.pressures.contains(&node)
+    }
+
+    /// Number of unknowns of a node.
+    pub(super) fn unknowns(&self, node: usize) -> usize {
+        if self.is_pressure(node) { 1 } else { 2 }
     }
 
     /// Flags of the nodes between which values may be unsymmetric.
@@ -202,10 +208,13 @@ impl SparseMatrix {
 
     /// Adds to the two columns of a block.
     pub fn add_block(&mut self, block: BlockPosition, columns: [[f64; 2]; 2]) {
-        for (j, column) in columns.into_iter().enumerate() {
-            let own = &mut self.values[block.value(0, j)..][..2];
-            own.iter_mut().zip(column).for_each(|(own, value)| *own += value);
-        }
+        columns.into_iter().enumerate().for_each(|(j, column)| self.add_column(block, j, column));
+    }
+
+    /// Adds to one column of a block.
+    pub fn add_column(&mut self, block: BlockPosition, j: usize, column: [f64; 2]) {
+        let own = &mut self.values[block.value(0, j)..][..2];
+        own.iter_mut().zip(column).for_each(|(own, value)| *own += value);
     }
 
     /// Adds another matrix on the same pattern, each column multiplied by its factor.

@@ -149,7 +149,7 @@ pub struct Mesh {
     /// Number of nodes of bars that belong to no element: the last ones
     #[doc(hidden)]
     pub bar_nodes: usize,
-    /// Number of nodes that stand for two pressures of flowing pore water each, and belong to no element
+    /// Number of nodes that stand for a pressure of flowing pore water each, and belong to no element
     #[doc(hidden)]
     pub water_nodes: usize,
 }

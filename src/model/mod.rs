@@ -173,6 +173,11 @@ impl Model {
         2 * self.mesh.nodes.len()
     }
 
+    /// Number of unknowns: the second dof of a node that stands for a pressure is none.
+    pub fn unknowns(&self) -> usize {
+        self.dofs() - self.saddle()
+    }
+
     /// Number of negative eigenvalues of a tangent at a stable equilibrium: the pressures of water that flows.
     pub fn saddle(&self) -> usize {
         self.flow.as_ref().map_or(0, PoreFlow::count)

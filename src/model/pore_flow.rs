@@ -1,13 +1,15 @@
 //! Water that flows through the pores of bodies: its pressures, the elements that it fills, and where it leaves them.
 //!
-//! Every corner of an element has a pressure, linear or bilinear between corners. Two pressures stand in the place of the two displacements of a
-//! node of their own, which belongs to no element, so that matrices keep blocks of two by two:
+//! Every corner of an element has a pressure, linear or bilinear between corners. It stands in the place of the first displacement of a node of
+//! its own, which belongs to no element; the second displacement stands for nothing, so that matrices keep blocks of two by two:
 //!
 //! ```text
 //! p = p₀ + s û        s = M/h: stiffness of the skeleton over the size of an element, so that û is a length and its equation a force
 //! ```
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -16,8 +18,8 @@ use super::boundary::Profile;
 use super::element::SolidElement;
 use super::imposed::PoreFluid;
 use crate::laws::bulk::{GIVEN_PRESSURE, MaterialDescription, Slot};
-use crate::mesh::Mesh;
 use crate::mesh::configuration::vector;
+use crate::mesh::{ElementKind, Mesh};
 
 /// The water of all bodies in which it flows.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +27,8 @@ use crate::mesh::configuration::vector;
 pub struct PoreFlow {
     /// First of the nodes that stand for pressures
     pub first: usize,
-    /// Node whose pressure each number has; `None` of the last, if there is an odd number of them
-    pub corners: Vec<Option<usize>>,
+    /// Node of the bodies, or of a slave along which water flows, whose pressure each is
+    pub corners: Vec<usize>,
     /// Number of the pressure of each node
     pub of_node: Vec<Option<usize>>,
     /// p₀: pressure at the start [F/L²]
@@ -61,14 +63,12 @@ pub struct WetElement {
     pub in_mesh: usize,
     /// number of the pressure of each corner
     pub pressures: Vec<usize>,
-    /// place of the pressure of each corner among the dofs of the nodes
-    pub places: Vec<usize>,
     /// displacement of its nodes when it came into a deformed model, from which its strain counts; else empty [L]
     pub activation: Vec<Vector2<f64>>,
     /// quadrature points
     pub points: Vec<WetPoint>,
-    /// ∂N/∂X of the corners at every point [1/L]
-    pub slopes: Vec<OfCorners>,
+    /// shape functions there, the same for all elements of a kind
+    pub shape: Arc<[ShapePoint]>,
     /// N/R of all nodes at every point of a ring [1/L]
     pub hoop: Vec<[f64; MOST_NODES]>,
     /// what opens and flows, where that does not change
@@ -137,26 +137,22 @@ pub struct Flows {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct WetPoint {
-    /// N of the corners
-    pub values: [f64; MOST_CORNERS],
-    /// ∂N/∂X of all nodes [1/L]
-    pub gradients: OfNodes,
+    /// ∂ξ/∂X, by which ∂N/∂X = this ∂N/∂ξ [1/L]
+    pub map: Matrix2<f64>,
     /// reference volume [L³]
     pub volume: f64,
 }
 
-impl WetPoint {
-    /// p there, of the pressures of the corners [F/L²].
-    pub fn pressure(&self, corners: &[f64; MOST_CORNERS]) -> f64 {
-        self.values.iter().zip(corners).map(|(n, p)| n * p).sum()
-    }
-
-    /// A ∂N/∂X of all nodes.
-    #[inline(always)]
-    pub fn gradients_by(&self, matrix: &Matrix2<f64>) -> OfNodes {
-        let [x, y] = &self.gradients;
-        [0, 1].map(|i| std::array::from_fn(|node| matrix[(i, 0)] * x[node] + matrix[(i, 1)] * y[node]))
-    }
+/// Shape functions at a quadrature point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct ShapePoint {
+    /// N of the corners, linear between them
+    pub values: [f64; MOST_CORNERS],
+    /// ∂N/∂ξ of these
+    pub of_corners: OfCorners,
+    /// ∂N/∂ξ of all nodes
+    pub of_nodes: OfNodes,
 }
 
 /// Flow through what holds a pressure, in multiples of that through an element beside it under the same difference: the pressure is held to the
@@ -229,20 +225,20 @@ impl PoreFlow {
         if wet.is_empty() {
             return None;
         }
-        let pairs = paired(wet.iter().flat_map(|&body| bodies[body].elements.iter().copied()), mesh);
-        let first = mesh.nodes.len();
-        let mut corners: Vec<Option<usize>> = pairs.into_iter().flatten().collect();
+        let own = |&e: &usize| &mesh.elements[e].nodes[..mesh.elements[e].kind.corners()];
+        let of_bodies: BTreeSet<usize> =
+            wet.iter().flat_map(|&body| bodies[body].elements.iter().flat_map(own)).copied().collect();
+        let (first, count) = (mesh.nodes.len(), of_bodies.len());
         let mut of_node = vec![None; first];
-        corners.iter().enumerate().for_each(|(k, node)| node.iter().for_each(|&node| of_node[node] = Some(k)));
-        let count = corners.len();
-        corners.extend(channels.values().flatten().map(|(node, _)| Some(*node)));
-        corners.resize(corners.len().next_multiple_of(2), None);
+        of_bodies.iter().enumerate().for_each(|(k, &node)| of_node[node] = Some(k));
+        let of_channels = channels.values().flatten().map(|(node, _)| *node);
+        let corners: Vec<usize> = of_bodies.into_iter().chain(of_channels).collect();
         let tag = mesh.node_tags.iter().max().map_or(0, |tag| tag.saturating_add(1));
-        for (k, pair) in corners.chunks_exact(2).enumerate() {
-            mesh.nodes.push(pair[0].map_or_else(Vector2::zeros, |node| mesh.nodes[node]));
+        for (k, &corner) in corners.iter().enumerate() {
+            mesh.nodes.push(mesh.nodes[corner]);
             mesh.node_tags.push(tag.saturating_add(k as u64));
         }
-        mesh.water_nodes = corners.len() / 2;
+        mesh.water_nodes = corners.len();
         let mut flow = Self {
             first,
             initial: vec![0.0; corners.len()],
@@ -257,17 +253,23 @@ impl PoreFlow {
             outlets: Vec::new(),
             stiffness: 0.0,
         };
+        let mut known: Vec<Arc<[ShapePoint]>> = Vec::new();
         for &body in &wet {
             for &e in &bodies[body].elements {
                 flow.of_element[e] = Some(flow.elements.len());
-                let element = WetElement::new(e, &bodies[body], &solids[e], mesh, &flow)?;
+                let shape = shape(mesh.elements[e].kind, &solids[e]);
+                let shape = known.iter().find(|one| one[..] == shape[..]).cloned().unwrap_or_else(|| {
+                    known.push(shape.into());
+                    known[known.len() - 1].clone()
+                });
+                let element = WetElement::new(e, shape, &bodies[body], &solids[e], mesh, &flow)?;
                 let modulus = bodies[body].material.description().p_wave_modulus;
                 let depth = solids[e].mean_weight();
                 flow.stiffness = flow.stiffness.max(modulus * depth);
                 flow.volume += element.volumes.iter().sum::<f64>();
                 for &k in &element.pressures {
                     flow.scales[k] = flow.scales[k].max(modulus / element.size);
-                    let at = flow.corners[k].map_or_else(Vector2::zeros, |node| mesh.nodes[node]);
+                    let at = mesh.nodes[flow.corners[k]];
                     flow.initial[k] = bodies[body].flowing()?.pressure.value(at);
                 }
                 flow.elements.push(element);
@@ -287,12 +289,22 @@ impl PoreFlow {
         Some(flow)
     }
 
-    /// Dof that stands for a pressure.
-    pub fn dof(&self, number: usize) -> usize {
-        2 * self.first + number
+    /// Node that stands for a pressure.
+    pub fn node(&self, number: usize) -> usize {
+        self.first + number
     }
 
-    /// Number of pressures, with one that stands for none if they are odd.
+    /// The first dof of that node: the second stands for nothing, and stays 0.
+    pub fn dof(&self, number: usize) -> usize {
+        2 * self.node(number)
+    }
+
+    /// Nodes that stand for pressures.
+    pub fn nodes(&self) -> Range<usize> {
+        self.first..self.first + self.count()
+    }
+
+    /// Number of pressures.
     pub fn count(&self) -> usize {
         self.corners.len()
     }
@@ -307,7 +319,7 @@ impl PoreFlow {
         self.of_element.get(element).copied().flatten().map(|k| &self.elements[k])
     }
 
-    /// Stiffness of the equation of a pressure that stands for none [F/L].
+    /// Stiffness of the equation of a dof that stands for nothing, or for a pressure that only absent bodies have [F/L].
     pub fn spare(&self) -> f64 {
         self.stiffness
     }
@@ -331,54 +343,20 @@ impl PoreFlow {
     }
 }
 
-/// Pairs of neighbouring corners of some elements, the last one alone if they are odd. They go against the numbers of the mesh: the order of elimination
-/// takes nodes of equal degree by their numbers, and on six rectangles this way took 0 to 16 % less time for the linear systems than the other.
-fn paired(elements: impl Iterator<Item = usize>, mesh: &Mesh) -> Vec<[Option<usize>; 2]> {
-    let mut adjacent: Vec<[usize; 2]> = Vec::new();
-    for e in elements {
-        let element = &mesh.elements[e];
-        for edge in 0..element.kind.corners() {
-            let [a, b] = element.kind.edge(edge).0.map(|local| element.nodes[local]);
-            adjacent.extend([[a, b], [b, a]]);
-        }
-    }
-    adjacent.sort_unstable();
-    let mut taken = vec![false; mesh.nodes.len()];
-    let (mut pairs, mut alone) = (Vec::new(), Vec::new());
-    for others in adjacent.chunk_by(|one, next| one[0] == next[0]) {
-        let node = others[0][0];
-        if std::mem::replace(&mut taken[node], true) {
-            continue;
-        }
-        match others.iter().map(|[_, other]| *other).rev().find(|&other| !taken[other]) {
-            Some(other) => {
-                taken[other] = true;
-                pairs.push([Some(node), Some(other)]);
-            }
-            None => alone.push(node),
-        }
-    }
-    pairs.reverse();
-    pairs.extend(alone.chunks(2).map(|two| [two.first().copied(), two.get(1).copied()]));
-    pairs
-}
-
 impl WetElement {
-    fn new(e: usize, body: &Body, solid: &SolidElement, mesh: &Mesh, flow: &PoreFlow) -> Option<Self> {
+    fn new(
+        e: usize,
+        shape: Arc<[ShapePoint]>,
+        body: &Body,
+        solid: &SolidElement,
+        mesh: &Mesh,
+        flow: &PoreFlow,
+    ) -> Option<Self> {
         let element = &mesh.elements[e];
         let corners = element.kind.corners();
         let pressures: Vec<usize> = element.nodes[..corners].iter().filter_map(|&node| flow.of_node[node]).collect();
-        let mut nodes = element.nodes.clone();
-        let mut places = Vec::new();
-        for &k in &pressures {
-            let node = flow.dof(k) / 2;
-            let place = nodes.iter().position(|other| *other == node).unwrap_or_else(|| {
-                nodes.push(node);
-                nodes.len() - 1
-            });
-            places.push(2 * place + flow.dof(k) % 2);
-        }
-        Self::shaped([nodes, pressures, places], e, Vec::new(), body, solid, mesh)
+        let nodes = element.nodes.iter().copied().chain(pressures.iter().map(|&k| flow.node(k))).collect();
+        Self::shaped([nodes, pressures], shape, e, Vec::new(), body, solid, mesh)
     }
 
     /// The element as it comes at displacements of its nodes.
@@ -389,12 +367,13 @@ impl WetElement {
         solid: &SolidElement,
         mesh: &Mesh,
     ) -> Option<Self> {
-        let numbers = [&self.nodes, &self.pressures, &self.places].map(Clone::clone);
-        Self::shaped(numbers, self.element, activation, body, solid, mesh)
+        let numbers = [&self.nodes, &self.pressures].map(Clone::clone);
+        Self::shaped(numbers, self.shape.clone(), self.element, activation, body, solid, mesh)
     }
 
     fn shaped(
-        [nodes, pressures, places]: [Vec<usize>; 3],
+        [nodes, pressures]: [Vec<usize>; 2],
+        shape: Arc<[ShapePoint]>,
         e: usize,
         activation: Vec<Vector2<f64>>,
         body: &Body,
@@ -403,7 +382,7 @@ impl WetElement {
     ) -> Option<Self> {
         let (kind, fluid) = (mesh.elements[e].kind, body.flowing()?);
         let (corners, law) = (kind.corners(), body.material.description());
-        let linear = if corners == 3 { crate::mesh::ElementKind::T3 } else { crate::mesh::ElementKind::Q4 };
+        let linear = linear(kind);
         let mut positions = mesh.places(e);
         positions.iter_mut().zip(&activation).for_each(|(x, u)| *x += u);
         // ∂X/∂ξ with the geometry of all nodes
@@ -411,19 +390,11 @@ impl WetElement {
             let nodes = positions.iter().zip(kind.derivatives(at));
             nodes.map(|(x, d)| (x - positions[0]) * Vector2::from(d).transpose()).sum()
         };
-        // ∂N/∂X = (∂X/∂ξ)⁻ᵀ ∂N/∂ξ
-        let slopes = |at: [f64; 2]| {
-            let inverse = map(at).transpose().try_inverse().unwrap_or_default();
-            let slopes = linear.derivatives(at).into_iter().map(|d| inverse * Vector2::from(d));
-            let slopes: [Vector2<f64>; MOST_CORNERS] = filled(slopes);
-            [0, 1].map(|i| slopes.map(|slope| slope[i]))
-        };
         let quadrature = solid.quadrature();
         let rounds = if mesh.section.is_axisymmetric() { quadrature.len() } else { 0 };
         let hoop = solid.geometry().take(rounds).map(|(_, hoop, _)| filled(hoop.iter().copied())).collect();
-        let points = quadrature.iter().zip(solid.geometry()).map(|(point, (gradients, _, volume))| WetPoint {
-            values: filled(linear.values(point.at)),
-            gradients: [0, 1].map(|i| filled(gradients.iter().map(|gradient| gradient[i]))),
+        let points = quadrature.iter().zip(solid.geometry()).map(|(point, (_, _, volume))| WetPoint {
+            map: map(point.at).transpose().try_inverse().unwrap_or_default(),
             volume,
         });
         let mut mass = [[0.0; MOST_CORNERS]; MOST_CORNERS];
@@ -451,10 +422,9 @@ impl WetElement {
             in_mesh: positions.len(),
             nodes,
             pressures,
-            places,
             activation,
             points: points.collect(),
-            slopes: quadrature.iter().map(|point| slopes(point.at)).collect(),
+            shape,
             hoop,
             constant: None,
             variables: law.slot(&GIVEN_PRESSURE).map(|slot| (slot, law.variables.len())),
@@ -480,12 +450,13 @@ impl WetElement {
         let (mut flows, [kx, ky]) = (Flows::default(), self.mobility);
         let mut opens = [OfNodes::default(); MOST_CORNERS];
         for (k, a) in (0..self.points.len()).flat_map(|k| (0..self.pressures.len()).map(move |a| (k, a))) {
-            let (point, [x, y]) = (&self.points[k], &self.slopes[k]);
-            let share = self.biot * point.volume * point.values[a];
+            let (point, [x, y], gradients) =
+                (&self.points[k], self.slopes(k), self.gradients_by(k, &Matrix2::identity()));
+            let share = self.biot * point.volume * self.shape[k].values[a];
             for node in 0..MOST_NODES {
                 let around = self.hoop.get(k).map_or(0.0, |hoop| hoop[node]);
-                opens[a][0][node] += share * (point.gradients[0][node] + around);
-                opens[a][1][node] += share * point.gradients[1][node];
+                opens[a][0][node] += share * (gradients[0][node] + around);
+                opens[a][1][node] += share * gradients[1][node];
             }
             for (b, conducts) in flows.conducts[a].iter_mut().enumerate() {
                 *conducts += point.volume * (kx * x[a] * x[b] + ky * y[a] * y[b]);
@@ -494,6 +465,21 @@ impl WetElement {
         }
         ConstantFlow { opens, flows }
     }
+}
+
+/// The element of the corners.
+fn linear(kind: ElementKind) -> ElementKind {
+    if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 }
+}
+
+/// Shape functions of an element at its quadrature points.
+fn shape(kind: ElementKind, solid: &SolidElement) -> Vec<ShapePoint> {
+    let at = |at: [f64; 2]| ShapePoint {
+        values: filled(linear(kind).values(at)),
+        of_corners: [0, 1].map(|i| filled(linear(kind).derivatives(at).into_iter().map(|d| d[i]))),
+        of_nodes: [0, 1].map(|i| filled(kind.derivatives(at).into_iter().map(|d| d[i]))),
+    };
+    solid.quadrature().iter().map(|point| at(point.at)).collect()
 }
 
 /// As many of some values as there are places, and zeros in the others.
@@ -536,19 +522,38 @@ impl WetElement {
     /// F in the plane, and the stretch out of it, at a point of some number.
     #[inline(always)]
     pub fn deformed(&self, k: usize, [x, y]: &OfNodes) -> (Matrix2<f64>, f64) {
-        // By columns, in one vector of the processor; two sums that do not wait for each other.
-        let (mut sums, mut stretch) = ([[1.0, 0.0, 0.0, 1.0], [0.0; 4]], 1.0);
-        let [along_x, along_y] = &self.points[k].gradients;
+        // ∂u/∂ξ by columns, in one vector of the processor; two sums that do not wait for each other.
+        let (mut sums, mut stretch) = ([[0.0; 4]; 2], 1.0);
+        let [first, second] = &self.shape[k].of_nodes;
         for node in 0..MOST_NODES {
             let (moved, slopes) =
-                ([x[node], y[node], x[node], y[node]], [along_x[node], along_x[node], along_y[node], along_y[node]]);
+                ([x[node], y[node], x[node], y[node]], [first[node], first[node], second[node], second[node]]);
             (0..4).for_each(|i| sums[node % 2][i] += moved[i] * slopes[i]);
         }
         if let Some(hoop) = self.hoop.get(k) {
             x.iter().zip(hoop).for_each(|(x, share)| stretch += share * x);
         }
-        let f: [f64; 4] = std::array::from_fn(|i| sums[0][i] + sums[1][i]);
-        (Matrix2::from_column_slice(&f), stretch)
+        let by: [f64; 4] = std::array::from_fn(|i| sums[0][i] + sums[1][i]);
+        (Matrix2::identity() + Matrix2::from_column_slice(&by) * self.points[k].map.transpose(), stretch)
+    }
+
+    /// p at a point of some number, of the pressures of the corners [F/L²].
+    #[inline(always)]
+    pub fn pressure(&self, k: usize, corners: &[f64; MOST_CORNERS]) -> f64 {
+        self.shape[k].values.iter().zip(corners).map(|(n, p)| n * p).sum()
+    }
+
+    /// ∂N/∂X of the corners at a point of some number [1/L].
+    pub fn slopes(&self, k: usize) -> OfCorners {
+        let ([first, second], by) = (&self.shape[k].of_corners, &self.points[k].map);
+        [0, 1].map(|i| std::array::from_fn(|a| by[(i, 0)] * first[a] + by[(i, 1)] * second[a]))
+    }
+
+    /// A ∂N/∂X of all nodes at a point of some number.
+    #[inline(always)]
+    pub fn gradients_by(&self, k: usize, matrix: &Matrix2<f64>) -> OfNodes {
+        let ([first, second], by) = (&self.shape[k].of_nodes, matrix * self.points[k].map);
+        [0, 1].map(|i| std::array::from_fn(|node| by[(i, 0)] * first[node] + by[(i, 1)] * second[node]))
     }
 
     /// Writes the pressure at every point to the variables of the material there.
@@ -556,8 +561,8 @@ impl WetElement {
         let Some((slot, count)) = self.variables else { return };
         let mut pressures = [0.0; MOST_CORNERS];
         pressures.iter_mut().zip(&self.pressures).for_each(|(p, &k)| *p = flow.pressure(k, u));
-        for (own, point) in variables.chunks_exact_mut(count).zip(&self.points) {
-            slot.of_mut(own)[0] = point.pressure(&pressures);
+        for (k, own) in variables.chunks_exact_mut(count).enumerate() {
+            slot.of_mut(own)[0] = self.pressure(k, &pressures);
         }
     }
 

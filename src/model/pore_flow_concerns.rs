@@ -61,8 +61,8 @@ fn moves(model: &Model, flow: &PoreFlow) -> Option<String> {
             continue;
         }
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, None)).collect();
-        for (point, [x, y]) in wet.points.iter().zip(&wet.slopes) {
-            let [kx, ky] = wet.mobility;
+        for (number, point) in wet.points.iter().enumerate() {
+            let ([x, y], [kx, ky]) = (wet.slopes(number), wet.mobility);
             for (a, &k) in wet.pressures.iter().enumerate() {
                 let weighs = point.volume * ky * wet.weight * y[a];
                 sums[k][0] += weighs;
@@ -78,7 +78,7 @@ fn moves(model: &Model, flow: &PoreFlow) -> Option<String> {
     let worst =
         (0..flow.count()).filter(|&k| free[k] && sums[k][1] > 0.0).map(|k| (k, (sums[k][0] / sums[k][1]).abs()));
     let (k, share) = worst.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, share)| *share > AT_REST)?;
-    let at = flow.corners[k].map(|node| model.mesh.nodes[node])?;
+    let at = model.mesh.nodes[flow.corners[k]];
     Some(format!(
         "water flows at the start where nothing drains it, as at ({}, {}), where {} % of it comes to rest: it weighs, so give its `pressure` at the \
          start as unit_weight (level - y), or what a state of flow has",
@@ -133,7 +133,7 @@ fn unprescribed(model: &Model, flow: &PoreFlow) -> Option<String> {
         return None;
     }
     let part_of = CoupledParts::of(model).of_node;
-    let parts = |drain: &Drain| drain.corners.iter().map(|(k, ..)| part_of[flow.dof(*k) / 2]).collect::<Vec<_>>();
+    let parts = |drain: &Drain| drain.corners.iter().map(|(k, ..)| part_of[flow.node(*k)]).collect::<Vec<_>>();
     model.steps.iter().find_map(|step| {
         let prescribed: Vec<usize> = step.drains.iter().filter(|drain| drain.kind != DrainKind::Flux).flat_map(parts).collect();
         let drain = step.drains.iter().find(|drain| is_given(drain) && parts(drain).iter().all(|part| !prescribed.contains(part)))?;

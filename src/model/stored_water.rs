@@ -38,7 +38,8 @@ impl Model {
         let wet = &*self.wet(state, wet);
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(&state.displacement))).collect();
         let (mut sum, mut volume) = (Vector2::zeros(), 0.0);
-        for (k, (point, slopes)) in wet.points.iter().zip(&wet.slopes).enumerate() {
+        for (k, point) in wet.points.iter().enumerate() {
+            let slopes = wet.slopes(k);
             let along = |i: usize| slopes[i].iter().zip(&pressures).map(|(slope, p)| slope * p).sum();
             let mut slope = Vector2::new(along(0), along(1));
             let (f, hoop) = wet.deformed(k, &wet.moved(&state.displacement));
@@ -48,7 +49,7 @@ impl Model {
                 jacobian = f.determinant() * hoop;
             }
             let driven = slope + Vector2::new(0.0, wet.weight);
-            let pressure: f64 = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
+            let pressure: f64 = wet.shape[k].values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
             let share = point.volume * wet.permeability(jacobian, pressure);
             sum -= share * Vector2::new(wet.mobility[0] * driven.x, wet.mobility[1] * driven.y);
             volume += point.volume;

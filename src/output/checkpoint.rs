@@ -26,7 +26,7 @@ pub const PREVIOUS: &str = "checkpoint_prev.bin";
 
 const MAGIC: &[u8] = b"fecontact checkpoint\n";
 /// Version of the file content; every change of the layout requires a new number.
-pub const VERSION: u32 = 37;
+pub const VERSION: u32 = 38;
 const HEAD: usize = MAGIC.len() + 16;
 
 /// Saved run, and the program, case and mesh that it belongs to.

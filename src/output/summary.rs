@@ -141,8 +141,8 @@ impl Summary {
         Self {
             ending,
             about,
-            dofs: model.dofs(),
-            nodes: model.mesh.nodes.len(),
+            dofs: model.unknowns(),
+            nodes: model.mesh.nodes.len() - model.mesh.water_nodes,
             elements: model.mesh.elements.len(),
             point_masses: model.point_masses.iter().map(|point| point.nodes.len()).sum(),
             contact_points: model.contacts.iter().map(|pair| pair.points.len()).sum(),

@@ -338,7 +338,7 @@ impl Warnings {
                 "body `{}` at {}, t = {}: p_w is {}, below its `cavitation`, {}, to which water that flows is not limited: suction, and the strength that \
                  follows from it, are overestimated",
                 model.bodies[body].name,
-                text::vector(flow.corners[k].map_or_else(Vector2::zeros, |node| model.mesh.nodes[node])),
+                text::vector(model.mesh.nodes[flow.corners[k]]),
                 time_text(state.time),
                 text::number(least),
                 text::number(limit)

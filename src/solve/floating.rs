@@ -116,7 +116,7 @@ fn null_motion_of_a_node(model: &Model, tangent: &SparseMatrix) -> Option<String
     let mut lone = vec![true; model.mesh.nodes.len()];
     model.bodies.iter().flat_map(|body| &body.nodes).for_each(|&node| lone[node] = false);
     if let Some(flow) = &model.flow {
-        lone[flow.first..flow.first + flow.count() / 2].fill(false);
+        lone[flow.nodes()].fill(false);
     }
     (0..lone.len()).filter(|&node| lone[node]).find_map(|node| {
         let block = tangent.pattern.coupled(node, node);

@@ -75,7 +75,7 @@ fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Works
     evaluate_forces(step, &mut now, work)?;
     let mut fading: Vec<f64> = now.force.iter().zip(&state.force).map(|(new, old)| new - old).collect();
     // Water comes and goes at once.
-    let of_water = model.flow.as_ref().map_or(Vec::new(), |flow| (flow.first..flow.first + flow.count() / 2).collect());
+    let of_water = model.flow.as_ref().map_or(Vec::new(), |flow| flow.nodes().collect());
     let idle_nodes = [model.idle_nodes(&step.absent), model.idle_bar_nodes(&step.bars.absent), of_water];
     for node in idle_nodes.into_iter().flatten() {
         let dofs = 2 * node..2 * node + 2;

@@ -14,9 +14,7 @@ use serde_json::{Value, json};
 /// The pressure at the corner nearest to a place.
 fn pressure(run: &Finished, state: &State, at: [f64; 2]) -> f64 {
     let flow = run.model.flow.as_ref().expect("water flows");
-    let away = |k: &usize| {
-        flow.corners[*k].map_or(f64::INFINITY, |node| (run.model.mesh.nodes[node] - Vector2::from(at)).norm())
-    };
+    let away = |k: &usize| (run.model.mesh.nodes[flow.corners[*k]] - Vector2::from(at)).norm();
     let number = (0..flow.count()).min_by(|a, b| away(a).total_cmp(&away(b)));
     flow.pressure(number.expect("a pressure"), Some(&state.displacement))
 }
@@ -197,7 +195,7 @@ fn driven(number: usize) {
     let after = run.at(begin);
     let flow = run.model.flow.as_ref().expect("water flows");
     let mut left: Vec<[f64; 2]> = (0..flow.count())
-        .filter_map(|k| Some((k, flow.corners[k]?)))
+        .map(|k| (k, flow.corners[k]))
         .map(|(k, node)| {
             let radius = run.model.mesh.nodes[node].x + after.displacement[2 * node];
             let expected = (2.0 * (plastic / radius).ln()).max(0.0);

@@ -33,6 +33,11 @@ pub fn arbitrary_displacement(model: &Model, size: f64) -> Vec<f64> {
     (0..model.dofs()).map(|dof| size * arbitrary(dof)).collect()
 }
 
+/// Another one, whose sums with the first are arbitrary as well.
+pub fn another_displacement(model: &Model, size: f64) -> Vec<f64> {
+    (0..model.dofs()).map(|dof| size * arbitrary(dof * dof)).collect()
+}
+
 /// A state with velocities and accelerations.
 pub fn moving(model: &Model) -> State {
     let mut state = model.initial_state();

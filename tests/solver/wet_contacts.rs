@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::{Blocks, Finished, close, finish, half_way, model, quadratic, refusal, with};
-use crate::terms::{arbitrary_displacement, tangent_error};
+use crate::terms::{another_displacement, arbitrary_displacement, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::Model;
 use fecontact::model::state::{LastIncrement, State};
@@ -180,8 +180,7 @@ fn strained(contact: Value, kind: &str, section: &str, gap: f64) -> (Arc<Model>,
     state.last_increment =
         Some(LastIncrement { dt: 0.3, displacement: arbitrary_displacement(&model, 0.01), ends_in_touch: false });
     state.time = 0.1;
-    let mut u: Vec<f64> =
-        old.iter().zip(arbitrary_displacement(&model, 0.01).iter().rev()).map(|(a, b)| a + b).collect();
+    let mut u: Vec<f64> = old.iter().zip(another_displacement(&model, 0.01)).map(|(a, b)| a + b).collect();
     model.bodies[0].nodes.iter().for_each(|&node| u[2 * node + 1] += gap);
     (model, state, u)
 }

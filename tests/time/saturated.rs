@@ -58,10 +58,8 @@ fn newmark() -> Value {
 /// p at the corner nearest to a place.
 pub fn pressure(run: &Finished, state: &State, at: [f64; 2]) -> f64 {
     let flow = run.model.flow.as_ref().expect("water flows");
-    let away =
-        |k: &usize| (run.model.mesh.nodes[flow.corners[*k].unwrap_or_default()] - nalgebra::Vector2::from(at)).norm();
-    let corners = (0..flow.count()).filter(|&k| flow.corners[k].is_some());
-    let nearest = corners.min_by(|a, b| away(a).total_cmp(&away(b))).expect("a corner");
+    let away = |k: &usize| (run.model.mesh.nodes[flow.corners[*k]] - nalgebra::Vector2::from(at)).norm();
+    let nearest = (0..flow.count()).min_by(|a, b| away(a).total_cmp(&away(b))).expect("a corner");
     flow.pressure(nearest, Some(&state.displacement))
 }
 

@@ -89,10 +89,10 @@ fn mesh(case: &Case, model: &Model) -> Vec<String> {
         source,
         format!(
             "{}, {}{}, {}",
-            count(model.mesh.nodes.len(), "node"),
+            count(model.mesh.nodes.len() - model.mesh.water_nodes, "node"),
             count(model.mesh.elements.len(), "element"),
             if kinds.is_empty() { String::new() } else { format!(" ({})", kinds.join(", ")) },
-            count(model.dofs(), "dof")
+            count(model.unknowns(), "dof")
         ),
         format!("x from {x0} to {x1}, y from {y0} to {y1}"),
     ]

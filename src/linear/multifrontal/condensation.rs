@@ -61,8 +61,8 @@ impl Condensation {
         if factors.replaced() > 0 {
             return None;
         }
-        let places = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        let [rows, columns] = [&scaling.rows, &scaling.columns].map(|all| places().map(|dof| all[dof]).collect());
+        let in_order = |all: &Vec<f64>| symbolic.dofs.iter().map(|&dof| all[dof]).collect();
+        let [rows, columns] = [&scaling.rows, &scaling.columns].map(in_order);
         let mut condensed =
             Condensed { symbolic: symbolic.clone(), rows, columns, stiffness: Vec::new(), reach: Vec::new(), factors };
         condensed.stiffness = condensed.unscaled(*kept);
@@ -115,8 +115,7 @@ impl Condensed {
 
     /// g from b, with what [`Condensed::backward`] needs of b.
     pub fn forward(&self, b: &[f64]) -> Forwarded {
-        let dofs = self.symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        let mut ordered: Vec<f64> = dofs.zip(&self.rows).map(|(dof, row)| row * b[dof]).collect();
+        let mut ordered: Vec<f64> = self.symbolic.dofs.iter().zip(&self.rows).map(|(&dof, row)| row * b[dof]).collect();
         solve::forward(&self.symbolic, &self.factors, 1, &mut ordered);
         let first = ordered.len() - self.stiffness.len().isqrt();
         let right = ordered[first..].iter().zip(&self.rows[first..]).map(|(g, row)| g / row).collect();
@@ -130,9 +129,9 @@ impl Condensed {
         let own = ordered[first..].iter_mut().zip(kept.iter().zip(&self.columns[first..]));
         own.for_each(|(x, (kept, column))| *x = kept / column);
         solve::backward(&self.symbolic, &self.factors, 1, &mut ordered);
-        let mut x = vec![0.0; ordered.len()];
-        let dofs = self.symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        dofs.zip(ordered.iter().zip(&self.columns)).for_each(|(dof, (ordered, column))| x[dof] = column * ordered);
+        let mut x = vec![0.0; 2 * self.symbolic.pattern.nodes()];
+        let scaled = ordered.iter().zip(&self.columns);
+        self.symbolic.dofs.iter().zip(scaled).for_each(|(&dof, (ordered, column))| x[dof] = column * ordered);
         x
     }
 }

@@ -97,7 +97,7 @@ impl Factors {
         let changed = self.gather(symbolic, matrix, scaling);
         let actions = actions(symbolic, &changed, &self.kept);
         self.values.resize(symbolic.values(), 0.0);
-        self.exchanges.resize(2 * symbolic.nodes.len(), 0);
+        self.exchanges.resize(symbolic.dofs.len(), 0);
         self.found.resize(symbolic.fronts.len(), Found::default());
         let Self { values, exchanges, found, a, .. } = self;
         let mut rest = FrontBlock { values, exchanges, found };
@@ -131,11 +131,12 @@ impl Factors {
 /// Write the scaled values of some entries over others; whether they differ.
 fn take_values(entries: &[Entry], values: &mut [f64], matrix: &SparseMatrix, scaling: &Scaling) -> bool {
     let mut differ = false;
-    for (&Entry { block, row, column, .. }, values) in entries.iter().zip(values.as_chunks_mut::<4>().0) {
+    for (&Entry { block, row, column, unknowns, .. }, values) in entries.iter().zip(values.as_chunks_mut::<4>().0) {
         let [rows, columns] = [(&scaling.rows, row), (&scaling.columns, column)]
             .map(|(scales, node)| [0, 1].map(|i| scales[2 * node as usize + i]));
         let mut new = [0.0; 4];
-        for (j, (pair, scale)) in new.as_chunks_mut::<2>().0.iter_mut().zip(columns).enumerate() {
+        let pairs = new.as_chunks_mut::<2>().0.iter_mut().zip(columns).take(unknowns[1] as usize);
+        for (j, (pair, scale)) in pairs.enumerate() {
             let column = &matrix.values[block.value(0, j)..][..2];
             *pair = [column[0] * rows[0] * scale, column[1] * rows[1] * scale];
         }
@@ -187,7 +188,7 @@ impl Numeric<'_> {
             let children: Vec<(&Front, &[f64])> = (0..front.children.len())
                 .map(|k| {
                     let child = &fronts[front.children[in_order(k)] as usize];
-                    (child, passed_on.split_off(..child.below() * child.below()).unwrap_or_default())
+                    (child, passed_on.split_off(..child.below * child.below).unwrap_or_default())
                 })
                 .collect();
             self.eliminate(front, part, &children, below, &mut weighted);
@@ -197,7 +198,7 @@ impl Numeric<'_> {
         let (mut low, mut high) = (0, stacks.values.len());
         for &root in forest.roots.iter().filter(|&&root| self.actions[root as usize] != Action::Rest) {
             let front = &fronts[root as usize];
-            let count = front.below() * front.below();
+            let count = front.below * front.below;
             let values = if front.odd {
                 high -= count;
                 &stacks.values[high..][..count]
@@ -226,7 +227,7 @@ impl Numeric<'_> {
             .zip(&passed_on)
             .map(|(&child, values)| (&fronts[child as usize], &values[..]))
             .collect();
-        let mut below = vec![0.0; front.below() * front.below()];
+        let mut below = vec![0.0; front.below * front.below];
         self.eliminate(front, part, &children, &mut below, &mut Vec::new());
         self.keep(number as usize, &below);
         self.waiting.put(number, below);
@@ -260,13 +261,13 @@ impl Numeric<'_> {
         }
         let (pivots, exchanges) = (front.pivots, part.exchanges);
         if front.symmetric {
-            let mut panel = SymmetricPanel { lower, pivots, below: front.below(), exchanges, room };
+            let mut panel = SymmetricPanel { lower, pivots, below: front.below, exchanges, room };
             part.found[0] = panel.factorize();
             if !below.is_empty() {
                 panel.contribution(below);
             }
         } else {
-            let mut panel = Panel { lower, upper, pivots, below: front.below(), exchanges };
+            let mut panel = Panel { lower, upper, pivots, below: front.below, exchanges };
             part.found[0] = Found { replaced: panel.factorize(), negative: 0, odd: panel.is_odd() };
             if !below.is_empty() {
                 panel.contribution(below);
@@ -276,7 +277,7 @@ impl Numeric<'_> {
             children.iter().for_each(|(child, values)| add_below(front, below, child, values));
         }
         if front.mirrors {
-            mirror(below, front.below());
+            mirror(below, front.below);
         }
     }
 }
@@ -296,26 +297,26 @@ impl Sums<'_> {
         let size = self.front.size();
         let own = |range: &Range<usize>| entries[range.clone()].iter().zip(a.as_chunks::<4>().0[range.clone()].iter());
         for (entry, values) in own(&self.front.lower) {
-            for (j, values) in values.as_chunks::<2>().0.iter().enumerate() {
-                let column = &mut self.lower[entry.target as usize + j * size..][..2];
-                column[0] += values[0];
-                column[1] += values[1];
+            let [rows, columns] = entry.unknowns.map(usize::from);
+            for (j, values) in values.as_chunks::<2>().0[..columns].iter().enumerate() {
+                let column = &mut self.lower[entry.target as usize + j * size..][..rows];
+                column.iter_mut().zip(values).for_each(|(own, value)| *own += value);
             }
         }
-        let below = self.front.below();
+        let below = self.front.below;
         for (entry, values) in own(&self.front.upper) {
-            for i in 0..2 {
-                let row = &mut self.upper[entry.target as usize + i * below..][..2];
-                row[0] += values[i];
-                row[1] += values[2 + i];
+            let [rows, columns] = entry.unknowns.map(usize::from);
+            for i in 0..rows {
+                let row = &mut self.upper[entry.target as usize + i * below..][..columns];
+                row.iter_mut().zip(values.as_chunks::<2>().0).for_each(|(own, column)| *own += column[i]);
             }
         }
     }
 
     /// Add what a child passes on to the pivots (extend-add).
     fn add_contribution(&mut self, child: &Front, contribution: &[f64]) {
-        let (size, pivots, below) = (self.front.size(), self.front.pivots, self.front.below());
-        let rows = child.below().max(1);
+        let (size, pivots, below) = (self.front.size(), self.front.pivots, self.front.below);
+        let rows = child.below.max(1);
         let (inner, outer) = child.runs.split_at(child.inner_runs);
         let columns =
             |run: &Run| contribution[run.from as usize * rows..][..run.length as usize * rows].chunks_exact(rows);
@@ -348,7 +349,7 @@ fn copied(front: &Front, values: &[f64]) -> Vec<f64> {
     if front.mirrors || !front.symmetric {
         return values.to_vec();
     }
-    let rows = front.below().max(1);
+    let rows = front.below.max(1);
     let mut lower = vec![0.0; values.len()];
     for (k, (column, from)) in lower.chunks_exact_mut(rows).zip(values.chunks_exact(rows)).enumerate() {
         column[k..].copy_from_slice(&from[k..]);
@@ -358,7 +359,7 @@ fn copied(front: &Front, values: &[f64]) -> Vec<f64> {
 
 /// Add what a child passes on past the pivots.
 fn add_below(front: &Front, below: &mut [f64], child: &Front, contribution: &[f64]) {
-    let (target_rows, rows) = (front.below(), child.below().max(1));
+    let (target_rows, rows) = (front.below, child.below.max(1));
     let outer = &child.runs[child.inner_runs..];
     for (number, run) in outer.iter().enumerate() {
         let columns = contribution[run.from as usize * rows..][..run.length as usize * rows].chunks_exact(rows);

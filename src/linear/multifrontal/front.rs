@@ -27,8 +27,8 @@ pub struct Front {
     pub pivots: usize,
     /// Nodes below the pivots, as positions in the order of elimination, ascending
     pub rows: Vec<u32>,
-    /// Row in the parent's front of the first unknown of each node in `rows`
-    pub to_parent: Vec<u32>,
+    /// Number of their unknowns
+    pub below: usize,
     /// The rows below that stay together in the parent; the first `inner_runs` of them are eliminated there
     pub runs: Vec<Run>,
     /// Number of `runs` that are eliminated in the parent
@@ -53,19 +53,14 @@ pub struct Front {
 }
 
 impl Front {
-    /// Unknowns below the pivots.
-    pub fn below(&self) -> usize {
-        2 * self.rows.len()
-    }
-
     /// Rows of the front.
     pub fn size(&self) -> usize {
-        self.pivots + self.below()
+        self.pivots + self.below
     }
 
     /// Number of values of its factors.
     pub fn length(&self) -> usize {
-        self.pivots * if self.symmetric { self.size() } else { self.size() + self.below() }
+        self.pivots * if self.symmetric { self.size() } else { self.size() + self.below }
     }
 
     /// Floating-point operations: LU of the pivots, both panels, the contribution; half of them where it is symmetric.
@@ -73,7 +68,7 @@ impl Front {
         if self.open {
             return 0.0;
         }
-        let (k, r) = (self.pivots as f64, self.below() as f64);
+        let (k, r) = (self.pivots as f64, self.below as f64);
         let half = if self.symmetric { 0.5 } else { 1.0 };
         half * (2.0 / 3.0 * k * k * k + 2.0 * k * k * r + 2.0 * k * r * r)
     }
@@ -139,9 +134,9 @@ pub fn forests(fronts: &[Front]) -> Vec<Forest> {
 fn room(forest: &[Front], fronts: &[Front]) -> usize {
     let (mut held, mut peak) = (0, 0);
     for front in forest {
-        held += front.below().pow(2);
+        held += front.below.pow(2);
         peak = peak.max(held);
-        held -= front.children.iter().map(|&child| fronts[child as usize].below().pow(2)).sum::<usize>();
+        held -= front.children.iter().map(|&child| fronts[child as usize].below.pow(2)).sum::<usize>();
     }
     peak
 }
@@ -174,7 +169,7 @@ impl Stacks {
 
     /// Room for a contribution that is at hand, on the stack of the front.
     pub fn push(&mut self, front: &Front) -> &mut [f64] {
-        let own = front.below() * front.below();
+        let own = front.below * front.below;
         if front.odd {
             self.high -= own;
             &mut self.values[self.high..][..own]
@@ -186,7 +181,7 @@ impl Stacks {
 
     /// Room for the contribution of a front, and the contributions of its children.
     pub fn next(&mut self, front: &Front, fronts: &[Front]) -> (&mut [f64], &[f64]) {
-        let (own, children) = (front.below() * front.below(), children_values(front, fronts));
+        let (own, children) = (front.below * front.below, children_values(front, fronts));
         if front.odd {
             let (low, high) = self.values[..self.high].split_at_mut(self.low);
             let room = high.len() - own;
@@ -199,7 +194,7 @@ impl Stacks {
 
     /// The front is done: drop the contributions of its children and keep its own.
     pub fn pop(&mut self, front: &Front, fronts: &[Front]) {
-        let (own, children) = (front.below() * front.below(), children_values(front, fronts));
+        let (own, children) = (front.below * front.below, children_values(front, fronts));
         if front.odd {
             self.high -= own;
             self.low -= children;
@@ -212,5 +207,5 @@ impl Stacks {
 
 /// Number of values that the children of a front pass on.
 fn children_values(front: &Front, fronts: &[Front]) -> usize {
-    front.children.iter().map(|&child| fronts[child as usize].below().pow(2)).sum()
+    front.children.iter().map(|&child| fronts[child as usize].below.pow(2)).sum()
 }

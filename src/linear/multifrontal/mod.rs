@@ -47,7 +47,7 @@ pub struct Multifrontal {
     ordered: Vec<f64>,
 }
 
-/// A dof with an equation of its own, A_dd x_d = b_d, and its column in the others.
+/// A dof with an equation of its own, A_dd x_d = b_d, and its column in the others: one that is constrained, or the second of a pressure.
 struct Constrained {
     dof: usize,
     diagonal: f64,
@@ -57,14 +57,16 @@ struct Constrained {
 impl Constrained {
     /// All of a matrix.
     fn of(matrix: &SparseMatrix) -> Vec<Self> {
+        let pattern = &matrix.pattern;
+        let is_second = |dof: usize| dof % 2 == 1 && pattern.is_pressure(dof / 2);
         let one = |dof: usize| {
-            let blocks = matrix.pattern.column(dof / 2);
+            let blocks = pattern.column(dof / 2).filter(|_| !is_second(dof));
             let column = blocks.flat_map(|block| [0, 1].map(|i| matrix.values[block.value(i, dof % 2)])).collect();
-            let own = matrix.pattern.coupled(dof / 2, dof / 2);
+            let own = pattern.coupled(dof / 2, dof / 2);
             let diagonal = matrix.values[own.value(dof % 2, dof % 2)];
             Self { dof, diagonal, column }
         };
-        (0..matrix.size()).filter(|&dof| matrix.constrained[dof]).map(one).collect()
+        (0..matrix.size()).filter(|&dof| matrix.constrained[dof] || is_second(dof)).map(one).collect()
     }
 
     /// Solves for the dof by itself and moves its effect to the right-hand side; returns its value.
@@ -123,12 +125,10 @@ impl Multifrontal {
         };
         let constrained: Vec<Vec<f64>> = columns.iter_mut().map(own).collect();
         let count = columns.len();
-        let dof = |row: usize| 2 * symbolic.nodes[row / 2] + row % 2;
         self.ordered.clear();
         for front in &symbolic.fronts {
             for b in columns.iter() {
-                let pivots = (front.first..front.first + front.pivots).map(dof);
-                self.ordered.extend(pivots.map(|dof| rows[dof] * b[dof]));
+                self.ordered.extend(symbolic.pivots(front).iter().map(|&dof| rows[dof] * b[dof]));
             }
         }
         solve::forward(symbolic, &self.factors, count, &mut self.ordered);
@@ -137,8 +137,7 @@ impl Multifrontal {
         for front in &symbolic.fronts {
             for b in columns.iter_mut() {
                 let values = rest.split_off(..front.pivots).unwrap_or_default();
-                let pivots = (front.first..front.first + front.pivots).map(dof);
-                pivots.zip(values).for_each(|(dof, x)| b[dof] = scales[dof] * x);
+                symbolic.pivots(front).iter().zip(values).for_each(|(&dof, x)| b[dof] = scales[dof] * x);
             }
         }
         for (b, constrained) in columns.iter_mut().zip(constrained) {
@@ -180,13 +179,13 @@ impl LinearSolver for Multifrontal {
 
     fn negative_pivots(&self) -> Option<usize> {
         let symbolic = self.symbolic.as_ref()?;
-        let negative = || self.factors.negative().saturating_sub(symbolic.of_saddle(true));
+        let negative = || self.factors.negative().saturating_sub(symbolic.pressures(true));
         symbolic.fronts.iter().all(|front| front.symmetric).then(negative)
     }
 
     fn least_negative(&self) -> Option<usize> {
         let symbolic = self.symbolic.as_ref()?;
-        let [by_nature, of_rest] = [true, false].map(|symmetric| symbolic.of_saddle(symmetric));
+        let [by_nature, of_rest] = [true, false].map(|symmetric| symbolic.pressures(symmetric));
         let odd = symbolic.fronts.iter().any(|front| !front.symmetric)
             && (self.factors.is_odd() != self.reversed) != (of_rest % 2 == 1);
         let negative = self.factors.negative().saturating_sub(by_nature);

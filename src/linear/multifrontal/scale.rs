@@ -95,15 +95,17 @@ fn grow(most: &mut f64, value: f64) {
     *most = value.abs().max(*most);
 }
 
-/// Visit the columns with the nodes of their rows and their values.
+/// Visit the columns of unknowns with the nodes of their rows and their values.
 #[inline(always)]
 fn each_column(matrix: &SparseMatrix, mut visit: impl FnMut(usize, &[usize], &[f64])) {
     let mut rest = &matrix.values[..];
     for node in 0..matrix.pattern.nodes() {
         let rows = matrix.pattern.neighbours(node);
-        for column in [2 * node, 2 * node + 1] {
-            visit(column, rows, rest.split_off(..2 * rows.len()).unwrap_or_default());
-        }
+        let columns = rest.split_off(..4 * rows.len()).unwrap_or_default().chunks_exact(2 * rows.len());
+        columns
+            .take(matrix.pattern.unknowns(node))
+            .enumerate()
+            .for_each(|(j, values)| visit(2 * node + j, rows, values));
     }
 }
 

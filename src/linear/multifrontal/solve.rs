@@ -47,10 +47,10 @@ impl Substitution<'_> {
             let x = rest.split_off_mut(..self.count * front.pivots).unwrap_or_default();
             self.gather(front, x, None, &mut y);
             let children = front.children.iter().map(|&child| &fronts[child as usize]);
-            let own = stack.len() - self.count * children.clone().map(Front::below).sum::<usize>();
+            let own = stack.len() - self.count * children.clone().map(|child| child.below).sum::<usize>();
             let mut passed_on = &stack[own..];
             for child in children {
-                let values = passed_on.split_off(..self.count * child.below()).unwrap_or_default();
+                let values = passed_on.split_off(..self.count * child.below).unwrap_or_default();
                 self.add(front, &mut y, values, child);
             }
             stack.truncate(own);
@@ -62,7 +62,7 @@ impl Substitution<'_> {
         }
         let mut passed_on = &stack[..];
         for &root in &forest.roots {
-            let own = passed_on.split_off(..self.count * fronts[root as usize].below()).unwrap_or_default();
+            let own = passed_on.split_off(..self.count * fronts[root as usize].below).unwrap_or_default();
             self.waiting.put(root, own.to_vec());
         }
     }
@@ -90,13 +90,13 @@ impl Substitution<'_> {
         for front in fronts[forest.fronts.clone()].iter().rev() {
             let first = rest.len() - self.count * front.pivots;
             let x = rest.split_off_mut(first..).unwrap_or_default();
-            let own = stack.len() - self.count * front.below();
+            let own = stack.len() - self.count * front.below;
             self.gather(front, x, Some(&stack[own..]), &mut y);
             stack.truncate(own);
             self.backward(front, &mut y);
             self.columns(front, x, &y).for_each(|(x, y)| x.copy_from_slice(&y[..front.pivots]));
             for &child in &front.children {
-                y.chunks_exact(front.size()).for_each(|y| stack.extend(seen(y, &fronts[child as usize])));
+                y.chunks_exact(front.size()).for_each(|y| see(y, &fronts[child as usize], &mut stack));
             }
         }
     }
@@ -109,15 +109,16 @@ impl Substitution<'_> {
         self.backward(front, &mut y);
         self.columns(front, x, &y).for_each(|(x, y)| x.copy_from_slice(&y[..front.pivots]));
         for &child in &front.children {
-            let seen = y.chunks_exact(front.size()).flat_map(|y| seen(y, &fronts[child as usize]));
-            self.waiting.put(child, seen.collect());
+            let mut seen = Vec::new();
+            y.chunks_exact(front.size()).for_each(|y| see(y, &fronts[child as usize], &mut seen));
+            self.waiting.put(child, seen);
         }
     }
 
     /// All rows of a front in y, column after column: x at its pivots, and the values `below` them, or zeros.
     fn gather(&self, front: &Front, x: &[f64], below: Option<&[f64]>, y: &mut Vec<f64>) {
         y.clear();
-        let rows = front.below();
+        let rows = front.below;
         for (k, pivots) in x.chunks_exact(front.pivots).enumerate() {
             y.extend_from_slice(pivots);
             match below {
@@ -139,10 +140,10 @@ impl Substitution<'_> {
 
     /// Add what a child passes on to the rows of its parent.
     fn add(&self, front: &Front, y: &mut [f64], passed_on: &[f64], child: &Front) {
-        for (y, passed_on) in y.chunks_exact_mut(front.size()).zip(passed_on.chunks_exact(child.below().max(1))) {
-            for (pair, &place) in passed_on.chunks_exact(2).zip(&child.to_parent) {
-                y[place as usize] += pair[0];
-                y[place as usize + 1] += pair[1];
+        for (y, passed_on) in y.chunks_exact_mut(front.size()).zip(passed_on.chunks_exact(child.below.max(1))) {
+            for run in &child.runs {
+                let values = &passed_on[run.from as usize..][..run.length as usize];
+                y[run.to as usize..].iter_mut().zip(values).for_each(|(own, value)| *own += value);
             }
         }
     }
@@ -176,9 +177,9 @@ impl Substitution<'_> {
     }
 }
 
-/// The values at the rows below the child's pivots.
-fn seen(y: &[f64], child: &Front) -> impl Iterator<Item = f64> {
-    child.to_parent.iter().flat_map(|&place| [y[place as usize], y[place as usize + 1]])
+/// Appends the values at the rows below the child's pivots.
+fn see(y: &[f64], child: &Front, seen: &mut Vec<f64>) {
+    child.runs.iter().for_each(|run| seen.extend_from_slice(&y[run.to as usize..][..run.length as usize]));
 }
 
 // Columns of the factors outside, columns of y inside: the steps of one y wait for each other, those of several do not.

@@ -7,9 +7,11 @@
 //! 300 000 dofs are 5 and 7 % more than those of symmetric values throughout, of which the longer elimination makes 2 and 4; where
 //! the order has put them, 22 and 17 %.
 //!
-//! Elimination tree, postorder and supernodes of the node graph.
+//! Elimination tree, postorder and supernodes of the node graph. Sizes are counted in unknowns, of which a pressure is one and any other node
+//! has two.
 
 use std::iter;
+use std::ops::Range;
 use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -19,20 +21,22 @@ use faer::sparse::linalg::amd;
 use super::front::{Forest, Front, Run, forests};
 use crate::linear::{BlockPosition, LinearFailure, Pattern};
 
-/// A 2×2 block of A and the place of its first value in the panel it goes to.
+/// A block of A and the place of its first value in the panel it goes to.
 pub struct Entry {
     pub block: BlockPosition,
     /// Row node and column node
     pub row: u32,
     pub column: u32,
     pub target: u32,
+    /// Unknowns of the row node and of the column node
+    pub unknowns: [u8; 2],
 }
 
 /// Fronts in postorder: children before parents, every subtree contiguous.
 pub struct Symbolic {
     pub pattern: Arc<Pattern>,
-    /// Node at each position of the order of elimination
-    pub nodes: Vec<usize>,
+    /// Dof of each unknown in the order of elimination
+    pub dofs: Vec<usize>,
     pub fronts: Vec<Front>,
     pub entries: Vec<Entry>,
     /// Whole subtrees, light enough to share out among threads. The fronts between are heavy.
@@ -51,17 +55,22 @@ impl Symbolic {
         let elimination = with_unsymmetric_late(&pattern, Elimination::new(&pattern, order));
         let supernodes = supernodes(&elimination, eliminated);
         let mut fronts = fronts(&pattern, &elimination, &supernodes);
-        fronts.iter_mut().for_each(|front| front.open = front.first >= 2 * eliminated);
+        fronts.iter_mut().for_each(|front| front.open = front.first >= elimination.starts[eliminated]);
         let entries = entries(&pattern, &elimination, &mut fronts);
         let forests = forests(&fronts);
-        Ok(Self { pattern, nodes: elimination.nodes, fronts, entries, forests })
+        let dofs = elimination.nodes.iter().flat_map(|&node| (0..pattern.unknowns(node)).map(move |i| 2 * node + i));
+        Ok(Self { dofs: dofs.collect(), pattern, fronts, entries, forests })
     }
 
-    /// Number of the saddle's unknowns in symmetric fronts, or in the others.
-    pub fn of_saddle(&self, symmetric: bool) -> usize {
-        let pivots = |front: &Front| front.first..front.first + front.pivots;
+    /// Dofs that a front eliminates.
+    pub fn pivots(&self, front: &Front) -> &[usize] {
+        &self.dofs[front.first..front.first + front.pivots]
+    }
+
+    /// Number of pressures in symmetric fronts, or in the others.
+    pub fn pressures(&self, symmetric: bool) -> usize {
         let fronts = self.fronts.iter().filter(|front| front.symmetric == symmetric);
-        fronts.flat_map(pivots).filter(|dof| self.pattern.is_of_saddle(self.nodes[dof / 2])).count()
+        fronts.flat_map(|front| self.pivots(front)).filter(|dof| self.pattern.is_pressure(*dof / 2)).count()
     }
 
     /// Number of values in the factors.
@@ -72,7 +81,7 @@ impl Symbolic {
     /// The most values that contributions hold at a time on this number of threads: those of all forests while the
     /// last of them are eliminated, or those of the heavy fronts, two of which may be at work.
     pub fn contributions(&self, threads: usize) -> usize {
-        let passed_on = |number: usize| self.fronts[number].below().pow(2);
+        let passed_on = |number: usize| self.fronts[number].below.pow(2);
         let rooms = threads * self.forests.iter().map(|forest| forest.room).max().unwrap_or(0);
         let mut stored: usize =
             self.forests.iter().flat_map(|forest| &forest.roots).map(|&root| passed_on(root as usize)).sum();
@@ -93,38 +102,42 @@ impl Symbolic {
 
 /// Row structure: what A couples with the pivots, and what the children pass on.
 fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]) -> Vec<Front> {
-    let owner = owners(supernodes, elimination.nodes.len());
+    let Elimination { nodes, positions, starts, .. } = elimination;
+    let owner = owners(supernodes, nodes.len());
     let mut fronts: Vec<Front> = Vec::with_capacity(supernodes.len());
     let mut families: Vec<Vec<u32>> = vec![Vec::new(); supernodes.len()];
-    let mut seen = vec![usize::MAX; elimination.nodes.len()];
+    let mut seen = vec![usize::MAX; nodes.len()];
     let mut start = 0;
-    for (s, &Supernode { first, end, below, .. }) in supernodes.iter().enumerate() {
-        let mut rows = Vec::with_capacity(below);
+    for (s, &Supernode { first, end, .. }) in supernodes.iter().enumerate() {
+        let mut rows = Vec::new();
         let mut add = |position: usize| {
             if position >= end && seen[position] != s {
                 seen[position] = s;
                 rows.push(position as u32);
             }
         };
-        for &node in &elimination.nodes[first..end] {
-            pattern.neighbours(node).iter().for_each(|&neighbour| add(elimination.positions[neighbour]));
+        for &node in &nodes[first..end] {
+            pattern.neighbours(node).iter().for_each(|&neighbour| add(positions[neighbour]));
         }
         let children = std::mem::take(&mut families[s]);
         for &child in &children {
             fronts[child as usize].rows.iter().for_each(|&row| add(row as usize));
         }
         rows.sort_unstable();
-        children.iter().for_each(|&child| place_in_parent(&mut fronts[child as usize], first, end, &rows));
+        for &child in &children {
+            let child = &mut fronts[child as usize];
+            (child.runs, child.inner_runs) = runs(&child.rows, first..end, &rows, starts);
+        }
         if let Some(&row) = rows.first() {
             families[owner[row as usize]].push(s as u32);
         }
         let unsymmetric = |node: &usize| pattern.unsymmetric()[*node];
-        let own = !elimination.nodes[first..end].iter().any(unsymmetric);
+        let own = !nodes[first..end].iter().any(unsymmetric);
         let mut front = Front {
-            first: 2 * first,
-            pivots: 2 * (end - first),
+            first: starts[first],
+            pivots: starts[end] - starts[first],
+            below: rows.iter().map(|&row| elimination.unknowns(row as usize)).sum(),
             rows,
-            to_parent: Vec::new(),
             runs: Vec::new(),
             inner_runs: 0,
             symmetric: own && children.iter().all(|&child| fronts[child as usize].symmetric),
@@ -142,13 +155,6 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
     }
     mark_below(&mut fronts);
     fronts
-}
-
-/// Places of a child's rows in its parent, a front of the positions `first..end` and then `rows`.
-fn place_in_parent(child: &mut Front, first: usize, end: usize, rows: &[u32]) {
-    child.to_parent = places(&child.rows, first, end, rows);
-    let inner = child.rows.partition_point(|&row| (row as usize) < end);
-    (child.runs, child.inner_runs) = runs(&child.to_parent, inner);
 }
 
 /// Mark the fronts whose depth in the tree is odd, and the symmetric ones below others.
@@ -173,39 +179,61 @@ fn owners(supernodes: &[Supernode], positions: usize) -> Vec<usize> {
     owners
 }
 
-/// Places of the nodes `wanted` in a front of the positions `first..end` and then `rows`. All lists ascend.
-fn places(wanted: &[u32], first: usize, end: usize, rows: &[u32]) -> Vec<u32> {
-    let mut k = 0;
-    let place = |&position: &u32| {
-        let position = position as usize;
-        if position < end {
-            return 2 * (position - first) as u32;
+/// Runs of unknowns of the nodes `wanted` in a front of the positions `pivots` and then `rows`, and how many of them it eliminates. All lists
+/// ascend.
+fn runs(wanted: &[u32], pivots: Range<usize>, rows: &[u32], starts: &[usize]) -> (Vec<Run>, usize) {
+    let unknowns = |position: u32| (starts[position as usize + 1] - starts[position as usize]) as u32;
+    let mut runs: Vec<Run> = Vec::new();
+    let (mut inner, mut from, mut k, mut below) = (0, 0, 0, (starts[pivots.end] - starts[pivots.start]) as u32);
+    for &position in wanted {
+        let is_inner = (position as usize) < pivots.end;
+        let to = if is_inner {
+            (starts[position as usize] - starts[pivots.start]) as u32
+        } else {
+            while rows[k] < position {
+                below += unknowns(rows[k]);
+                k += 1;
+            }
+            below
+        };
+        let (length, may_join) = (unknowns(position), is_inner || runs.len() > inner);
+        match runs.last_mut() {
+            Some(run) if may_join && run.to + run.length == to => run.length += length,
+            _ => runs.push(Run { from, to, length }),
         }
-        while (rows[k] as usize) < position {
-            k += 1;
+        if is_inner {
+            inner = runs.len();
         }
-        2 * (end - first + k) as u32
-    };
-    wanted.iter().map(place).collect()
+        from += length;
+    }
+    (runs, inner)
 }
 
 /// Each block of A goes to the front that eliminates the first of its two nodes; of a symmetric one those below the diagonal and on it.
 fn entries(pattern: &Pattern, elimination: &Elimination, fronts: &mut [Front]) -> Vec<Entry> {
-    let Elimination { nodes, positions, .. } = elimination;
+    let Elimination { nodes, positions, starts, .. } = elimination;
     let mut entries = Vec::with_capacity(pattern.values() / 4);
     let mut place = vec![0; nodes.len()];
+    let unknowns = |row: usize, column: usize| [row, column].map(|node| pattern.unknowns(node) as u8);
+    let mut end = 0;
     for front in fronts {
-        let (first, end) = (front.first / 2, (front.first + front.pivots) / 2);
+        let first = end;
+        while starts[end] < front.first + front.pivots {
+            end += 1;
+        }
         let (size, pivots) = (front.size(), front.pivots);
-        for (k, position) in (first..end).chain(front.rows.iter().map(|&row| row as usize)).enumerate() {
-            place[position] = 2 * k;
+        let mut next = 0;
+        for position in (first..end).chain(front.rows.iter().map(|&row| row as usize)) {
+            place[position] = next;
+            next += elimination.unknowns(position);
         }
         let start = entries.len();
         for column in first..end {
             for (&row, block) in pattern.neighbours(nodes[column]).iter().zip(pattern.column(nodes[column])) {
                 if positions[row] >= if front.symmetric { column } else { first } {
                     let target = (place[positions[row]] + place[column] * size) as u32;
-                    entries.push(Entry { block, row: row as u32, column: nodes[column] as u32, target });
+                    let unknowns = unknowns(row, nodes[column]);
+                    entries.push(Entry { block, row: row as u32, column: nodes[column] as u32, target, unknowns });
                 }
             }
         }
@@ -214,28 +242,13 @@ fn entries(pattern: &Pattern, elimination: &Elimination, fronts: &mut [Front]) -
             for &column in pattern.neighbours(nodes[row]).iter().filter(|&&column| positions[column] >= end) {
                 let block = pattern.coupled(nodes[row], column);
                 let target = (place[positions[column]] - pivots + place[row] * (size - pivots)) as u32;
-                entries.push(Entry { block, row: nodes[row] as u32, column: column as u32, target });
+                let unknowns = unknowns(nodes[row], column);
+                entries.push(Entry { block, row: nodes[row] as u32, column: column as u32, target, unknowns });
             }
         }
         front.upper = front.lower.end..entries.len();
     }
     entries
-}
-
-/// Join the nodes whose places follow each other, and count the runs of the first `inner` nodes.
-fn runs(places: &[u32], inner: usize) -> (Vec<Run>, usize) {
-    let mut runs: Vec<Run> = Vec::new();
-    let mut inner_runs = 0;
-    for (k, &to) in places.iter().enumerate() {
-        match runs.last_mut() {
-            Some(run) if k != inner && run.to + run.length == to => run.length += 2,
-            _ => runs.push(Run { from: 2 * k as u32, to, length: 2 }),
-        }
-        if k < inner {
-            inner_runs = runs.len();
-        }
-    }
-    (runs, inner_runs)
 }
 
 /// Approximate minimum degree on the node graph: which node to eliminate as the k-th. Nested dissection, tried with `feral-metis` 0.3 on
@@ -255,7 +268,8 @@ pub fn order(pattern: &Pattern) -> Result<Vec<usize>, LinearFailure> {
 
 /// The elimination with the nodes between which values are unsymmetric at its end, if it costs less than the one given.
 fn with_unsymmetric_late(pattern: &Pattern, elimination: Elimination) -> Elimination {
-    let count = pattern.unsymmetric().iter().filter(|unsymmetric| **unsymmetric).count() as f64;
+    let unsymmetric = (0..pattern.nodes()).filter(|node| pattern.unsymmetric()[*node]);
+    let count = unsymmetric.map(|node| pattern.unknowns(node)).sum::<usize>() as f64;
     let work = elimination.work(pattern);
     // They are a dense matrix in the end, as a rule.
     if count == 0.0 || pattern.is_all_unsymmetric() || 2.0 / 3.0 * count.powi(3) > work {
@@ -277,9 +291,11 @@ pub struct Elimination {
     pub nodes: Vec<usize>,
     /// Position of each node
     pub positions: Vec<usize>,
+    /// Number of unknowns before each position, and of all
+    pub starts: Vec<usize>,
     /// First position below the diagonal of each column of L, or [`ROOT`]
     pub parents: Vec<usize>,
-    /// Nodes in each column of L, the diagonal included
+    /// Unknowns in each column of L, those of the diagonal included
     pub counts: Vec<usize>,
 }
 
@@ -297,15 +313,25 @@ impl Elimination {
             postorder.iter().map(|&k| if parents[k] == ROOT { ROOT } else { new_position[parents[k]] }).collect();
         let positions = inverse(&nodes);
         let counts = counts(pattern, &nodes, &positions, &parents);
-        Self { nodes, positions, parents, counts }
+        let before = nodes.iter().scan(0, |sum, &node| {
+            *sum += pattern.unknowns(node);
+            Some(*sum)
+        });
+        let starts = iter::once(0).chain(before).collect();
+        Self { nodes, positions, starts, parents, counts }
     }
 
-    /// Operations of the elimination node by node, up to a factor: twice as many where a node is unsymmetric or above one that is.
+    /// Number of unknowns at a position.
+    fn unknowns(&self, position: usize) -> usize {
+        self.starts[position + 1] - self.starts[position]
+    }
+
+    /// Operations of the elimination, up to a factor: twice as many where a node is unsymmetric or above one that is.
     fn work(&self, pattern: &Pattern) -> f64 {
         let mut unsymmetric: Vec<bool> = self.nodes.iter().map(|&node| pattern.unsymmetric()[node]).collect();
         let mut work = 0.0;
         for (k, (&parent, &count)) in self.parents.iter().zip(&self.counts).enumerate() {
-            work += (count * count) as f64 * if unsymmetric[k] { 2.0 } else { 1.0 };
+            work += (self.unknowns(k) * count * count) as f64 * if unsymmetric[k] { 2.0 } else { 1.0 };
             if parent != ROOT {
                 unsymmetric[parent] |= unsymmetric[k];
             }
@@ -369,14 +395,14 @@ fn postorder(parents: &[usize]) -> Vec<usize> {
 
 /// Row k of L is the subtree of the elimination tree that its entries span: count each column it passes.
 fn counts(pattern: &Pattern, nodes: &[usize], positions: &[usize], parents: &[usize]) -> Vec<usize> {
-    let mut counts = vec![1; nodes.len()];
+    let mut counts: Vec<usize> = nodes.iter().map(|&node| pattern.unknowns(node)).collect();
     let mut last_row = vec![ROOT; nodes.len()];
     for (k, &node) in nodes.iter().enumerate() {
         for &neighbour in pattern.neighbours(node) {
             let mut i = positions[neighbour];
             while i < k && last_row[i] != k {
                 last_row[i] = k;
-                counts[i] += 1;
+                counts[i] += pattern.unknowns(node);
                 i = parents[i];
             }
         }
@@ -391,31 +417,30 @@ pub struct Supernode {
     pub first: usize,
     /// One past the last position
     pub end: usize,
-    /// Nodes below: those of the last column, the diagonal excluded
-    pub below: usize,
-    /// Nodes of the trapezoid that are zero
+    /// Unknowns of these positions
+    width: usize,
+    /// Unknowns below: those of the last column, the diagonal excluded
+    below: usize,
+    /// Values of the trapezoid that are zero
     zeros: usize,
 }
 
 impl Supernode {
-    fn width(&self) -> usize {
-        self.end - self.first
-    }
-
     /// A child taken into its parent: the child's columns get the parent's rows.
     fn with_child(&self, child: &Self) -> Self {
-        let new_zeros = child.width() * (self.width() + self.below - child.below);
-        Self { first: child.first, zeros: child.zeros + self.zeros + new_zeros, ..*self }
+        let new_zeros = child.width * (self.width + self.below - child.below);
+        let (width, zeros) = (child.width + self.width, child.zeros + self.zeros + new_zeros);
+        Self { first: child.first, width, zeros, ..*self }
     }
 
     /// Small fronts may carry zeros: dense kernels lose more on the calls than on the zeros.
     fn worth_it(&self) -> bool {
-        let width = self.width();
-        let size = width * (width + 1) / 2 + width * self.below;
+        let width = self.width;
+        let size = width * (width + 2) / 2 + width * self.below;
         let allowed = match width {
-            0..=4 => 1.0,
-            5..=8 => 0.8,
-            9..=32 => 0.1,
+            0..=8 => 1.0,
+            9..=16 => 0.8,
+            17..=64 => 0.1,
             _ => 0.05,
         };
         self.zeros as f64 <= allowed * size as f64
@@ -427,16 +452,18 @@ impl Supernode {
 ///
 /// Source: Ashcraft & Grimes (1989), doi:10.1145/76909.76910.
 pub fn supernodes(elimination: &Elimination, eliminated: usize) -> Vec<Supernode> {
-    let Elimination { parents, counts, .. } = elimination;
+    let Elimination { parents, counts, starts, .. } = elimination;
     let n = parents.len();
     let mut supernodes: Vec<Supernode> = Vec::new();
     let mut first = 0;
     while first < n {
         let mut last = first;
-        while parents[last] == last + 1 && counts[last] == counts[last + 1] + 1 && last + 1 != eliminated {
+        let alike = |last: usize| counts[last] == counts[last + 1] + elimination.unknowns(last);
+        while parents[last] == last + 1 && alike(last) && last + 1 != eliminated {
             last += 1;
         }
-        let mut current = Supernode { first, end: last + 1, below: counts[last] - 1, zeros: 0 };
+        let (end, below) = (last + 1, counts[last] - elimination.unknowns(last));
+        let mut current = Supernode { first, end, width: starts[end] - starts[first], below, zeros: 0 };
         while let Some(child) = supernodes.last() {
             // In postorder the one before is a child or belongs to another subtree.
             if parents[child.end - 1] >= current.end || current.first == eliminated {

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -97,7 +96,7 @@ pub fn flow(
         let Some(fluid) = body.flowing() else { continue };
         for wet in body.elements.iter().filter_map(|&e| flow.wet(e)) {
             for &k in &wet.pressures {
-                let at = flow.corners[k].map_or_else(Vector2::zeros, |node| mesh.nodes[node]);
+                let at = mesh.nodes[flow.corners[k]];
                 let (own, other) = (fluid.pressure.value(at), flow.initial[k]);
                 let jumps = (own - other).abs() > 1e-9 * own.abs().max(other.abs());
                 if !jumps {
@@ -362,7 +361,7 @@ fn drain(
         _ => DrainKind::Conducts(entry.filter.unwrap_or(PRESCRIBED * conductance)),
     };
     let value = entry.pressure.clone().or(entry.head.clone()).or(entry.flux.clone()).unwrap_or_default();
-    let at = |k: usize| flow.corners[k].map_or_else(Vector2::zeros, |node| model.mesh.nodes[node]);
+    let at = |k: usize| model.mesh.nodes[flow.corners[k]];
     let corners: Vec<_> = areas.into_iter().map(|(k, area)| (k, at(k), area)).collect();
     for &(_, at, _) in &corners {
         let found = value.value(at);

@@ -40,7 +40,7 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Checked<()> {
     let mut constrained = vec![false; model.dofs()];
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
     nodes.for_each(|&node| constrained[2 * node..2 * node + 2].fill(true));
-    model.flow.iter().for_each(|flow| constrained[2 * flow.first..flow.dof(flow.count())].fill(true));
+    model.flow.iter().for_each(|flow| constrained[2 * flow.first..].fill(true));
     // Whether contact constrains a node that may separate is left to the solver.
     let rigid = model.contacts.iter().filter_map(|pair| pair.master.rigid_body()).flat_map(RigidBody::nodes);
     let points = model.contacts.iter().flat_map(ContactPair::slave_nodes).chain(rigid);
