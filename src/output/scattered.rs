@@ -21,6 +21,9 @@ const PART: f64 = 0.1;
 /// Its least number of increments, unless it is half of the step: in one or two, slip that begins and contact that advances alternate as well.
 const INCREMENTS: usize = 3;
 
+/// Most of that part which increments in a row are kept together for, as a fraction of it: however short they are, few are looked at.
+const TOGETHER: f64 = 1.0 / 32.0;
+
 /// The same at the end of a step for a contact so short that all of it lies close to its ends, where pressures are steep, unless one more
 /// residual alternates.
 const SCATTERS_IF_SHORT: f64 = 0.125;
@@ -40,8 +43,8 @@ pub struct Scattered {
 #[derive(Clone, Default, Serialize, Deserialize)]
 struct Within {
     /// The last increments, twice as long as the shortest part: half of a longer one alternates as much
-    last: VecDeque<Scatter>,
-    worst: Period,
+    last: VecDeque<Increments>,
+    worst: Part,
 }
 
 /// Scatter at the end of an increment.
@@ -49,14 +52,26 @@ struct Within {
 struct Scatter {
     /// [T]
     end: f64,
-    /// [T]
-    dt: f64,
     scatter: f64,
 }
 
-/// Increments in a row.
+/// One or more increments in a row.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
-struct Period {
+struct Increments {
+    count: usize,
+    /// [T]
+    begin: f64,
+    /// [T]
+    duration: f64,
+    /// Integral of the square of the scatter over their time [T]
+    squares: f64,
+    /// That with the largest scatter
+    largest: Scatter,
+}
+
+/// Part of a step.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+struct Part {
     /// Its beginning and end [T]
     span: [f64; 2],
     /// rms of the scatter over its time
@@ -76,8 +91,8 @@ impl Scattered {
             let sequence =
                 self.sequences.entry(k).or_insert_with(|| PointSequence::new(&pair.points, &model.mesh.undeformed()));
             let within = self.within.entry(k).or_default();
-            let increment = Scatter { end: state.time, dt: attempt.dt, scatter: sequence.scatter(states) };
-            within.add(increment, attempt.step.span.end - attempt.step.span.start);
+            let increment = Scatter { end: state.time, scatter: sequence.scatter(states) };
+            within.add(increment, attempt.dt, attempt.step.span.end - attempt.step.span.start);
             if !attempt.ends_step(state) {
                 continue;
             }
@@ -104,27 +119,49 @@ impl Scattered {
     }
 }
 
+impl Increments {
+    /// A single one.
+    fn one(increment: Scatter, dt: f64) -> Self {
+        let squares = increment.scatter.powi(2) * dt;
+        Self { count: 1, begin: increment.end - dt, duration: dt, squares, largest: increment }
+    }
+
+    /// These with those before them.
+    fn after(self, before: &Self) -> Self {
+        let largest = if before.largest.scatter > self.largest.scatter { before.largest } else { self.largest };
+        Self {
+            count: before.count + self.count,
+            begin: before.begin,
+            duration: before.duration + self.duration,
+            squares: before.squares + self.squares,
+            largest,
+        }
+    }
+}
+
 impl Within {
     /// Adds an increment of a step so long, which ends parts of it.
-    fn add(&mut self, increment: Scatter, step: f64) {
+    fn add(&mut self, increment: Scatter, dt: f64, step: f64) {
         let Self { last, worst } = self;
-        last.push_back(increment);
-        let (mut part, mut squares, mut duration) = (Period::default(), 0.0, 0.0);
-        for (count, before) in last.iter().rev().enumerate() {
-            squares += before.scatter.powi(2) * before.dt;
-            duration += before.dt;
-            if before.scatter > part.largest.scatter {
-                part.largest = *before;
-            }
-            let begin = before.end - before.dt;
-            part = Period { span: [begin, increment.end], mean: (squares / duration).sqrt(), ..part };
-            let least = if count + 1 < INCREMENTS { 0.5 } else { PART };
-            if duration >= least * step && part.mean > worst.mean {
-                *worst = part;
-            }
+        let one = Increments::one(increment, dt);
+        match last.back_mut() {
+            Some(before) if before.duration + dt <= TOGETHER * PART * step => *before = one.after(before),
+            _ => last.push_back(one),
         }
-        while last.len() > 2 * INCREMENTS && duration - last[0].dt > 2.0 * PART * step {
-            duration -= last[0].dt;
+        let mut all: Option<Increments> = None;
+        for before in last.iter().rev() {
+            let sum = all.map_or(*before, |all| all.after(before));
+            let Increments { count, begin, duration, squares, largest } = sum;
+            let mean = (squares / duration).sqrt();
+            let least = if count < INCREMENTS { 0.5 } else { PART };
+            if duration >= least * step && mean > worst.mean {
+                *worst = Part { span: [begin, increment.end], mean, largest };
+            }
+            all = Some(sum);
+        }
+        let mut duration = all.map_or(0.0, |all| all.duration);
+        while last.len() > 2 * INCREMENTS && duration - last[0].duration > 2.0 * PART * step {
+            duration -= last[0].duration;
             last.pop_front();
         }
     }
@@ -138,7 +175,7 @@ impl Within {
                 time_text(time)
             )
         };
-        let Period { span, mean, largest } = self.worst;
+        let Part { span, mean, largest } = self.worst;
         let at_end = sequence.scatter(states);
         let most = |a: (f64, String), b: (f64, String)| if b.0 > a.0 { b } else { a };
         let [from, to] = span.map(time_text);
