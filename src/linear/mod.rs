@@ -1,4 +1,4 @@
-//! Sparse matrices of two unknowns per node, and the linear solvers with a common trait.
+//! Sparse matrices of two unknowns per node, and one of a pressure, and the linear solvers with a common trait.
 
 mod dense;
 mod halved;
@@ -58,14 +58,14 @@ pub trait LinearSolver: Send {
         false
     }
 
-    /// Number of negative eigenvalues of the last matrix beyond those of its saddle, if it was factorized as a symmetric one: by Sylvester's law
+    /// Number of negative eigenvalues of the last matrix beyond those of its pressures, if it was factorized as a symmetric one: by Sylvester's law
     /// of inertia that of D.
     fn negative_pivots(&self) -> Option<usize> {
         None
     }
 
-    /// Least number of negative eigenvalues beyond those of the saddle that the last factors prove: all of them in symmetric parts, and one more if
-    /// the determinant of the rest has not the sign that its saddle gives it; `None` where that is not known.
+    /// Least number of negative eigenvalues beyond those of the pressures that the last factors prove: all of them in symmetric parts, and one more if
+    /// the determinant of the rest has not the sign that its pressures give it; `None` where that is not known.
     fn least_negative(&self) -> Option<usize> {
         self.negative_pivots()
     }
@@ -87,7 +87,7 @@ pub struct Solution {
     pub backward_error: f64,
     /// Number of pivots that vanished and were replaced
     pub perturbed_pivots: usize,
-    /// Negative eigenvalues of A beyond those of its saddle, if all of it was factorized as symmetric
+    /// Negative eigenvalues of A beyond those of its pressures, if all of it was factorized as symmetric
     pub negative_pivots: Option<usize>,
     /// Least number of negative eigenvalues of A ([`LinearSolver::least_negative`]), if anything is known of them
     pub least_negative: Option<usize>,

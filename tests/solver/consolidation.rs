@@ -212,6 +212,14 @@ fn a_unit_weight_of_other_units_is_reported() {
     assert!(!warned(9.81, json!([{"on": "soil_top", "dead_pressure": "3e4"}])));
 }
 
+/// Two quadratic elements on each other have six corners and seven other nodes: twice thirteen displacements, and six pressures.
+#[test]
+fn a_corner_has_one_pressure() {
+    let model = model(&column("q8", 2, json!({"initial": 0.1})));
+    assert_eq!(model.unknowns(), 2 * 13 + 6);
+    assert_eq!(model.mesh.nodes.len() - model.mesh.water_nodes, 13);
+}
+
 /// What is stored and what has left add up to nothing, and the audit of energies closes.
 #[test]
 fn water_and_energy_are_in_balance() {
