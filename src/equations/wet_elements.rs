@@ -80,6 +80,8 @@ struct Answer {
     energies: Pressed,
     /// ∂f/∂u_x of (5) where it is wanted, by column: that by u_y is the transposed of another, or none [F/L]
     stiffness: [OfNodes; MOST_NODES],
+    /// Half of that of f_y, to which the other is antisymmetric
+    across: [[f64; MOST_NODES]; MOST_NODES],
     /// p and b (J − 1) at every point [F/L²], [-]
     pores: [[f64; 2]; MOST_POINTS],
 }
@@ -88,11 +90,12 @@ impl Answer {
     /// Zeros, but for what points have, which is written, and the stiffness where it is not wanted.
     #[inline(always)]
     fn clear(&mut self, stiffens: bool) {
-        let Self { change, flow, size, by, force, energies, stiffness, .. } = self;
+        let Self { change, flow, size, by, force, energies, stiffness, across, .. } = self;
         [change, flow, size].into_iter().for_each(|sums| *sums = [0.0; MOST_CORNERS]);
         (*by, *force, *energies) = (PressureTangent::default(), OfNodes::default(), Pressed::default());
         if stiffens {
             *stiffness = [OfNodes::default(); MOST_NODES];
+            *across = [[0.0; MOST_NODES]; MOST_NODES];
         }
     }
 
@@ -111,7 +114,9 @@ impl Answer {
     #[inline(always)]
     fn balance(&mut self, wet: &WetElement, begun: &Begun, span: f64, now: &[f64; MOST_CORNERS], moved: &OfNodes) {
         let Flows { conducts, falls } = &begun.flows;
-        let way: OfNodes = [0, 1].map(|i| std::array::from_fn(|k| moved[i][k] - begun.moved[i][k]));
+        let mut way = *moved;
+        let before = begun.moved.as_flattened();
+        way.as_flattened_mut().iter_mut().zip(before).for_each(|(way, before)| *way -= before);
         for (a, opens) in self.by.opens.iter().enumerate() {
             let [opened, size] = sum_of_products(opens, &way);
             self.size[a] += size;
@@ -148,7 +153,8 @@ fn sum_of_products(a: &OfNodes, b: &OfNodes) -> [f64; 2] {
     };
     a.iter().zip(b).for_each(|(a, b)| add(a, b));
     add(a_rest, b_rest);
-    sums.map(|sums| sums.iter().sum())
+    let [products, sizes] = sums;
+    [products[0] + products[1] + products[2] + products[3], sizes[0] + sizes[1] + sizes[2] + sizes[3]]
 }
 
 /// J of a deformed element at a point.
@@ -340,7 +346,6 @@ impl Increment<'_> {
     ) -> Result<(), MaterialFailure> {
         let (moved, stiffens) = (wet.moved(self.u), wanted && wet.presses && !wet.is_linear);
         answer.clear(stiffens);
-        let mut across = [[0.0; MOST_NODES]; MOST_NODES];
         for k in 0..wet.points.len() {
             let deformed = wet.deformed(k, &moved);
             let opened = wet.biot * (jacobian(wet, &deformed)? - 1.0);
@@ -349,11 +354,12 @@ impl Increment<'_> {
                 answer.open(wet, k, opened, &opens_by(wet, k, &deformed));
             }
             if stiffens {
-                stiffen(wet, k, &deformed, answer.pores[k][0], &mut across, &mut answer.stiffness);
+                stiffen(wet, k, &deformed, answer.pores[k][0], answer);
             }
         }
         if stiffens {
-            for (b, [_, of_y]) in answer.stiffness.iter_mut().enumerate() {
+            let Answer { stiffness, across, .. } = answer;
+            for (b, [_, of_y]) in stiffness.iter_mut().enumerate() {
                 of_y.iter_mut().enumerate().for_each(|(a, of_y)| *of_y += across[b][a] - across[a][b]);
             }
         }
@@ -392,8 +398,7 @@ fn stiffen(
     k: usize,
     (f, stretch): &(Matrix2<f64>, f64),
     pressure: f64,
-    across: &mut [[f64; MOST_NODES]; MOST_NODES],
-    stiffness: &mut [OfNodes; MOST_NODES],
+    Answer { stiffness, across, .. }: &mut Answer,
 ) {
     let (point, [first, second]) = (&wet.points[k], &wet.shape[k].of_nodes);
     let share = wet.biot * pressure * point.volume;

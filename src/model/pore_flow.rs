@@ -553,7 +553,14 @@ impl WetElement {
     #[inline(always)]
     pub fn gradients_by(&self, k: usize, matrix: &Matrix2<f64>) -> OfNodes {
         let ([first, second], by) = (&self.shape[k].of_nodes, matrix * self.points[k].map);
-        [0, 1].map(|i| std::array::from_fn(|node| by[(i, 0)] * first[node] + by[(i, 1)] * second[node]))
+        // Loops that the compiler keeps in place, as vectors of the processor.
+        let mut all = OfNodes::default();
+        for (i, own) in all.iter_mut().enumerate() {
+            let [by_first, by_second] = [by[(i, 0)], by[(i, 1)]];
+            let slopes = first.iter().zip(second);
+            own.iter_mut().zip(slopes).for_each(|(own, (a, b))| *own = by_first * a + by_second * b);
+        }
+        all
     }
 
     /// Writes the pressure at every point to the variables of the material there.
