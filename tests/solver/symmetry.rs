@@ -368,7 +368,7 @@ proptest! {
         let mut flags = vec![false; nodes];
         unsymmetric.iter().for_each(|&node| flags[node] = true);
         let shift = (seed % 1000) as usize;
-        let pressures = if shift % 2 == 0 { nodes..nodes } else { (shift / 2) % nodes..nodes };
+        let pressures = if shift.is_multiple_of(2) { nodes..nodes } else { (shift / 2) % nodes..nodes };
         let pattern = Pattern::new(nodes, groups.iter().map(|group| &group[..])).symmetric_but(flags);
         let mut matrix = SparseMatrix::zero(Arc::new(pattern.with_pressures(pressures.clone())));
         matrix.values = noise(matrix.values.len() + shift).split_off(shift);
