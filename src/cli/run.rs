@@ -127,7 +127,7 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path) {
         report.cutbacks,
         report.rejected,
         report.newton_iterations,
-        model.dofs(),
+        model.unknowns(),
         report.wall_s.total,
         folder.display()
     );
