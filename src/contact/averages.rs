@@ -44,6 +44,11 @@ impl<N: Number> Pieces<'_, N> {
         })
     }
 
+    /// Whether g is not linear along the edge.
+    pub fn is_curved(&self) -> bool {
+        self.edge.len() > 2 || self.segment.middle.is_some()
+    }
+
     /// g at ξ.
     pub fn gap(&self, xi: &N) -> N {
         let Self { edge, segment, along, frame } = *self;
@@ -114,10 +119,10 @@ impl<N: Number> Averages<N> {
         let Pieces { edge, segment, along, frame } = *facing;
         let (half, middle) = (ends[1].minus(&ends[0]).scaled(0.5), ends[0].plus(&ends[1]).scaled(0.5));
         let points = match self.extent {
-            Extent::All if edge.len() == 2 && segment.middle.is_none() => 2,
+            _ if facing.is_curved() => 4,
+            Extent::All => 2,
             // One more function is multiplied.
-            Extent::Closed if edge.len() == 2 && segment.middle.is_none() => 3,
-            _ => 4,
+            Extent::Closed => 3,
         };
         let lean = (self.extent == Extent::Closed).then(|| lean(segment, along, frame));
         for (at, weight) in shape::gauss(points) {

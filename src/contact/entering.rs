@@ -14,10 +14,7 @@ impl ContactPair {
         let lifted = self.laws.iter().any(|law| law.cohesion.is_some() || !law.description.opening.is_empty());
         let whole = self.tied || self.small.is_some() || self.penetration.is_some() || fluid || lifted;
         let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) else { return };
-        // Between the ends of a curved edge the gap is not linear, and what is closed of it not one part.
-        let curved = mortar.edges.iter().any(|edge| edge.len() > 2)
-            || surface.segments.iter().any(|segment| segment.middle.is_some());
-        if whole || curved || self.is_offset() {
+        if whole || self.is_offset() {
             return;
         }
         let own: Vec<[usize; 2]> = mortar.edges.iter().map(|edge| [edge[0], edge[1]]).collect();

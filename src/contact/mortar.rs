@@ -353,19 +353,23 @@ impl Facing<'_> {
             let along = frame.at(edge[1]).minus(frame.at(edge[0])).normalized();
             for (_, overlap) in self.near(point).filter(|(part, _)| part.edge == e) {
                 let facing = Pieces { edge, segment: &self.surface.segments[overlap.segment], along: &along, frame };
-                let mut ends = facing.ends(overlap);
-                if extent == Extent::Closed {
-                    if between_nodes(edge.len(), hat, overlap.middle()).0 == 0.0 {
-                        continue;
-                    }
-                    let gaps = ends.each_ref().map(|xi| facing.gap(xi));
-                    let closed = ridges::closed(ends, &gaps);
-                    let all = gaps.into_iter().chain(least.take());
-                    least = all.min_by(|a, b| a.value().total_cmp(&b.value()));
-                    let Some(closed) = closed else { continue };
-                    ends = closed;
+                let ends = facing.ends(overlap);
+                if extent == Extent::All {
+                    averages.integrate(&facing, hat, ends);
+                    continue;
                 }
-                averages.integrate(&facing, hat, ends);
+                if between_nodes(edge.len(), hat, overlap.middle()).0 == 0.0 {
+                    continue;
+                }
+                let gaps = ends.each_ref().map(|xi| facing.gap(xi));
+                let middle = facing.is_curved().then(|| facing.gap(&ends[0].plus(&ends[1]).scaled(0.5)));
+                let closed = match &middle {
+                    Some(middle) => ridges::closed_parts(ends, [&gaps[0], middle, &gaps[1]]),
+                    None => [ridges::closed(ends, &gaps), None],
+                };
+                let all = gaps.into_iter().chain(middle).chain(least.take());
+                least = all.min_by(|a, b| a.value().total_cmp(&b.value()));
+                closed.into_iter().flatten().for_each(|ends| averages.integrate(&facing, hat, ends));
             }
         }
         least

@@ -18,7 +18,7 @@
 //! edge changes g as well is left out; it goes with the penetration. A uniform pressure still is exact, and forces act in pairs.
 //! An open point has the least gap of what it overlaps. The corner of a block whose one side faces the other body and whose next does not is
 //! no ridge: it rests on its whole side. Which corners are ridges is found where an increment begins, so that no iterate changes it.
-//! Quadratic edges have the averages of all that they overlap: their corners have narrower hats, and enter by half as much.
+//! Along quadratic edges and segments g is taken as quadratic between three places of an overlap, with up to two parts that are closed.
 
 use std::collections::BTreeMap;
 
@@ -77,10 +77,11 @@ impl Corners {
         };
         let slave = self.slave.iter().filter(|corner| {
             let [before, after] = corner.flanks;
-            let last = overlaps.0[before].overlaps.last().filter(|overlap| overlap.ends[1].xi >= 1.0);
-            let first = overlaps.0[after].overlaps.first().filter(|overlap| overlap.ends[0].xi <= -1.0);
-            last.is_some_and(|overlap| is_flank(before, overlap))
-                && first.is_some_and(|overlap| is_flank(after, overlap))
+            let faces = |edge: usize| overlaps.0[edge].overlaps.iter().any(|overlap| is_flank(edge, overlap));
+            // What faces a flank may end before the corner, where the other side turns round it.
+            let ends = overlaps.0[before].overlaps.last().is_some_and(|overlap| overlap.ends[1].xi > 0.0);
+            let begins = overlaps.0[after].overlaps.first().is_some_and(|overlap| overlap.ends[0].xi < 0.0);
+            ends && begins && faces(before) && faces(after)
         });
         let mut faced = vec![false; if self.master.is_empty() { 0 } else { surface.segments.len() }];
         if !faced.is_empty() {
@@ -152,4 +153,35 @@ pub(super) fn closed<N: Number>([start, end]: [N; 2], gaps: &[N; 2]) -> Option<[
         [false, true] => Some([zero(), end.clone()]),
         [false, false] => None,
     }
+}
+
+/// Discriminant over the square of the largest gap below which a quadratic gap touches zero, and does not cross it.
+const TANGENT: f64 = 1e-12;
+
+/// The parts of an overlap in which the surfaces overlap, given g at its start, middle and end, and quadratic in between:
+/// g = c + b t + a t², 0 ≤ t ≤ 1.
+pub(super) fn closed_parts<N: Number>([start, end]: [N; 2], [first, middle, last]: [&N; 3]) -> [Option<[N; 2]>; 2] {
+    let c = first;
+    let b = middle.scaled(4.0).minus(&first.scaled(3.0)).minus(last);
+    let a = first.plus(last).minus(&middle.scaled(2.0)).scaled(2.0);
+    let size = [first, middle, last].map(|gap| gap.value().abs()).into_iter().fold(0.0, f64::max);
+    let discriminant = b.times(&b).minus(&a.times(c).scaled(4.0));
+    let mut roots: Vec<N> = Vec::new();
+    if discriminant.value() > TANGENT * size * size {
+        // q/a and c/q, without cancellation
+        let q = b.plus(&discriminant.sqrt().scaled(1f64.copysign(b.value()))).scaled(-0.5);
+        let quotients = [(&q, &a), (c, &q)].into_iter().filter(|(_, divisor)| divisor.value() != 0.0);
+        roots.extend(quotients.map(|(part, divisor)| part.over(divisor)));
+    }
+    roots.retain(|t| t.value() > 0.0 && t.value() < 1.0);
+    roots.sort_by(|one, other| one.value().total_cmp(&other.value()));
+    let cuts: Vec<f64> = [0.0].into_iter().chain(roots.iter().map(Number::value)).chain([1.0]).collect();
+    let places = roots.iter().map(|t| start.plus(&t.times(&end.minus(&start))));
+    let places: Vec<N> = [start.clone()].into_iter().chain(places).chain([end.clone()]).collect();
+    let is_closed = |part: &usize| {
+        let t = 0.5 * (cuts[*part] + cuts[part + 1]);
+        c.value() + t * (b.value() + t * a.value()) < 0.0
+    };
+    let mut parts = (0..=roots.len()).filter(is_closed).map(|part| [places[part].clone(), places[part + 1].clone()]);
+    [parts.next(), parts.next()]
 }

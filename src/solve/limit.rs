@@ -1,5 +1,5 @@
-//! Why a static step may have no equilibrium further on: loads at their limit point, friction or bonds that weaken faster than what drives
-//! them gives way.
+//! Why a static step may have no equilibrium further on: loads at their limit point; friction, bonds or the resistance of a ridge that fall
+//! faster than what drives them gives way.
 
 use nalgebra::Vector2;
 
@@ -74,8 +74,8 @@ const SLIDES: f64 = 0.5;
 /// Rice (2003), J. Geophys. Res. 108, 2042.
 const NUCLEATION: f64 = 1.158;
 
-/// Slip that may be unstable under friction that weakens by W = Σ (|dμ/dδ| p + (c − c_r)/D) ℓ over the length L of the points that slip, the
-/// second where a bond is not used up: a zone of L > 1.158 G* L/W, or a contact that slides as a whole and ever faster.
+/// Slip that may be unstable: of a zone of L > 1.158 G* L/W under friction that weakens by W = Σ (|dμ/dδ| p + (c − c_r)/D) ℓ over the length L
+/// of the points that slip, the second where a bond is not used up; or of a contact that slides as a whole and ever faster.
 fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[ContactState]) -> Option<String> {
     let (mut length, mut slipping, mut weakening, mut now, mut so_far) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let mut what = "friction weakens";
@@ -96,14 +96,23 @@ fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[Conta
         so_far += point.friction.plastic_slip.abs() * point.length / (state.time - step.span.start);
     }
     let nucleates = pair.modulus > 0.0 && weakening > NUCLEATION * pair.modulus;
-    let slides = weakening > 0.0 && slipping > SLIDES * length && now > RUNS_AWAY * so_far;
+    let slides = slipping > SLIDES * length && now > RUNS_AWAY * so_far;
+    let why = if weakening > 0.0 {
+        format!(
+            "where it slips, {what} by up to {} per slip (force over length); if the bodies and their loading are softer \
+             than that, no static equilibrium follows",
+            number(weakening)
+        )
+    } else {
+        "it slides ever faster, and its friction does not weaken; where its resistance falls as it slides, over a ridge or \
+         off an end, no static equilibrium follows"
+            .into()
+    };
     (nucleates || slides).then(|| {
         format!(
-            "slip of contact `{}` may be unstable here: where it slips, {what} by up to {} per slip (force over \
-             length); if the bodies and their loading are softer than that, no static equilibrium follows: take a \
-             dynamic step (\"hht\"), with densities and with a `dt.min` that resolves fast slip; ",
-            pair.name,
-            number(weakening)
+            "slip of contact `{}` may be unstable here: {why}: take a dynamic step (\"hht\"), with densities and with a \
+             `dt.min` that resolves fast slip; ",
+            pair.name
         )
     })
 }

@@ -4,6 +4,7 @@
 mod common;
 
 mod along;
+mod asperities;
 mod bonds;
 mod bonds_in_motion;
 mod conduit;

@@ -11,12 +11,17 @@ use crate::self_contact::compare_tangent;
 /// A ridge between flanks of 45° goes 0.59 deep into ground twenty times softer, beside the middle of an edge of 0.74 or 0.74/`finer`; one of
 /// the two is the slave.
 fn ridge(slave: &str, finer: usize) -> Value {
+    ridge_of("Q4", slave, finer)
+}
+
+/// The same with other elements.
+fn ridge_of(kind: &str, slave: &str, finer: usize) -> Value {
     let master = if slave == "flank" { "surface" } else { "flank" };
     json!({
         "mesh": {"blocks": [
-            {"body": "ground", "corners": [[-10, -8], [10, -8], [10, 0], [-10, 0]], "elements": [27 * finer, 10 * finer],
+            {"body": "ground", "kind": kind, "corners": [[-10, -8], [10, -8], [10, 0], [-10, 0]], "elements": [27 * finer, 10 * finer],
              "sides": ["bottom", null, "surface", null]},
-            {"body": "die", "corners": [[0, 0.01], [4, 4.01], [0, 8.01], [-4, 4.01]], "elements": [8 * finer, 8 * finer],
+            {"body": "die", "kind": kind, "corners": [[0, 0.01], [4, 4.01], [0, 8.01], [-4, 4.01]], "elements": [8 * finer, 8 * finer],
              "sides": ["flank", "top", "top", "flank"]}]},
         "bodies": {"die": {"material": {"model": "neo_hookean", "E": 2000, "nu": 0.3}},
                    "ground": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
@@ -47,6 +52,46 @@ fn a_ridge_bears_from_its_touch_on() {
         // Were forces normal to the slave against an inclined master too, 2 % of the work would be missing with the flank as slave.
         let error = run.last().energy.error().abs() / run.last().energy.supplied();
         assert!(error < 2e-3, "{slave}: {error}");
+    }
+}
+
+/// So it does on quadratic edges. By nodes of the flanks these meshes bear 5.72 and 24.3 (Q8) and 5.92 and 23.8 (T6), and Q8 on edges of a
+/// quarter 3.86 and 20.6.
+#[test]
+fn a_quadratic_ridge_bears_from_its_touch_on() {
+    for (kind, slave, quarter, whole) in
+        [("Q8", "flank", 5.72, 24.3), ("Q8", "surface", 5.72, 24.3), ("T6", "flank", 5.92, 23.8)]
+    {
+        let run = finish(&ridge_of(kind, slave, 1));
+        let what = format!("{kind}, {slave}");
+        let forces: Vec<f64> = run.states.iter().map(|state| -run.reaction("top", state)[1]).collect();
+        println!("{what}: {} {}", force(&run, 0.25), force(&run, 1.0));
+        close(&what, force(&run, 0.25), quarter, 0.1 * quarter);
+        close(&what, force(&run, 1.0), whole, 0.05 * whole);
+        assert!(forces.windows(2).all(|pair| pair[0] <= pair[1]), "{what}: {forces:?}");
+        // One traction an edge: the tip in the middle of an edge closes one point.
+        assert!(compare_tangent(&run, slave) >= 1, "{what}");
+        let [bottom, top] = ["bottom", "top"].map(|side| run.reaction(side, run.last()));
+        (0..2).for_each(|i| close(&what, bottom[i], -top[i], 1e-6 * bottom[1].abs()));
+        let error = run.last().energy.error().abs() / run.last().energy.supplied();
+        assert!(error < 3e-3, "{what}: {error}");
+    }
+}
+
+/// On finer edges of the ground its nodes go past the tip to the other flank, which then is not what faces the flank beside the tip: the tip stays a
+/// ridge, and its force grows without jumps. By nodes these meshes bear 4.36 (Q4) and 4.37 (Q8) at t = 0.25, and tend to 20.7 at the end.
+#[test]
+fn a_ridge_stays_one_as_the_ground_folds_round_it() {
+    for (kind, finer, quarter) in [("Q4", 4, 4.36), ("Q8", 2, 4.37)] {
+        let run = finish(&ridge_of(kind, "flank", finer));
+        let forces: Vec<f64> = run.states.iter().map(|state| -run.reaction("top", state)[1]).collect();
+        close(kind, force(&run, 0.25), quarter, 0.05 * quarter);
+        close(kind, force(&run, 1.0), 20.7, 0.04 * 20.7);
+        assert!(
+            forces.windows(2).all(|pair| pair[1] - pair[0] < 0.1 * 20.7 && pair[0] <= pair[1]),
+            "{kind}: {forces:?}"
+        );
+        assert_eq!(run.report.cutbacks, 0, "{kind}");
     }
 }
 
