@@ -134,6 +134,11 @@ impl Mortar {
         edges.for_each(|((edge, &depth), cut)| cut.cut(edge, depth, surface, index, x));
     }
 
+    /// Whether either side has corners that may enter first.
+    pub fn has_corners(&self) -> bool {
+        self.corners != Corners::default()
+    }
+
     /// Whether the master has corners that may enter first.
     pub fn has_corners_of_master(&self) -> bool {
         self.corners.are_of_master()
@@ -152,7 +157,7 @@ impl Mortar {
         at: Vector2<f64>,
         x: &Configuration,
     ) -> Option<(f64, f64)> {
-        if self.corners == Corners::default() {
+        if !self.has_corners() {
             return None;
         }
         let mut overlaps = Overlaps::default();

@@ -10,6 +10,7 @@ use nalgebra::Vector2;
 
 use super::between::Between;
 use super::kinematics::{Kinematics, Lever, kinematics};
+use super::mortar::Mortar;
 use super::pair::ContactPair;
 use super::point::{ContactState, Tractions, Weights};
 use super::search::Index;
@@ -367,7 +368,15 @@ impl ContactPair {
         }
         if self.small.is_some() || self.mortar.is_some() {
             let mut met = self.meetings(x, false);
-            let acting = |k: usize| met[k].take().map(|(_, kinematics)| (k, kinematics));
+            let acting = |point: usize| {
+                let (_, mut kinematics) = met[point].take()?;
+                // Beside a corner that was a ridge in the increment, and is none where the next one begins, or the other way round, A has
+                // another extent by now.
+                if self.mortar.as_ref().is_some_and(Mortar::has_corners) {
+                    kinematics.length = states[point].length;
+                }
+                Some((point, kinematics))
+            };
             let found: Vec<(usize, Kinematics)> = closed.into_iter().filter_map(acting).collect();
             let place = |(point, kinematics): (usize, Kinematics)| {
                 let place = if self.mortar.is_some() {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use fecontact::output::warnings::Warnings;
+use nalgebra::Vector2;
 use serde_json::{Value, json};
 
 use crate::common::{self, Finished, close, finish};
@@ -168,4 +169,29 @@ fn the_energy_of_a_dragged_ridge_names_the_other_role() {
     };
     assert!(surface.contains("with slave and master exchanged") && !flank.contains("exchanged"));
     assert!(share(&surface) > 1.3 * share(&flank), "{surface}, {flank}");
+}
+
+/// The resultant that a run tells is what the supports bear, also in increments at whose end a corner stops or begins to be a ridge, as the trailing one
+/// of a dragged punch does.
+#[test]
+fn resultants_are_what_supports_bear() {
+    let run = finish(&json!({
+        "mesh": {"blocks": [
+            {"body": "ground", "kind": "Q8", "corners": [[-4, -3], [4, -3], [4, 0], [-4, 0]], "elements": [32, 10], "sides": ["low", null, "top", null]},
+            {"body": "punch", "kind": "Q8", "corners": [[-0.5, 0.005], [0.5, 0.005], [0.5, 1.005], [-0.5, 1.005]], "elements": [5, 5],
+             "sides": ["die", "die", "held", "die"]}]},
+        "bodies": {"ground": {"material": {"model": "neo_hookean", "E": 10, "nu": 0.3}},
+                   "punch": {"material": {"model": "neo_hookean", "E": 200, "nu": 0.3}}},
+        "contacts": {"c": {"slave": "top", "master": "die", "friction": {"law": "coulomb", "mu": 0.2}}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.1},
+             "supports": [{"on": "low", "ux": 0, "uy": 0}, {"on": "held", "ux": 0, "uy": -0.25}]},
+            {"name": "drag", "duration": 0.3, "dt": {"initial": 0.05}, "supports": [{"on": "held", "ux": 0.3}]}],
+    }));
+    for state in &run.states {
+        let x = run.model.configuration(&state.displacement);
+        let found = run.model.contacts[0].resultant(&state.contacts[0], &x, Vector2::zeros()).force;
+        let borne = run.reaction("low", state);
+        (0..2).for_each(|i| close(&format!("t = {}", state.time), found[i], -borne[i], 0.02 * borne[1].abs()));
+    }
 }
